@@ -1,0 +1,27 @@
+# How Polhode's own code is compiled. One place for flags, so that a record can name them.
+
+# Speed without changing results: IEEE arithmetic in every build, so that counts and round-off agree between machines.
+set(POLHODE_ARITHMETIC -ffp-contract=off -fno-math-errno)
+set(POLHODE_WARNINGS -Wall -Wextra -Wpedantic -Wconversion -Wshadow)
+
+find_program(CCACHE ccache)
+if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+endif()
+
+# The arithmetic, the warnings and the include root of everything we write.
+function(polhode_compile_options target)
+  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
+  target_compile_options(${target} PRIVATE ${POLHODE_WARNINGS} ${POLHODE_ARITHMETIC} $<$<BOOL:${POLHODE_WERROR}>:-Werror>)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+endfunction()
+
+function(polhode_library target)
+  add_library(${target} STATIC ${ARGN})
+  polhode_compile_options(${target})
+endfunction()
+
+function(polhode_executable target)
+  add_executable(${target} ${ARGN})
+  polhode_compile_options(${target})
+endfunction()

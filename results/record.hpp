@@ -1,0 +1,158 @@
+#pragma once
+/// The record: what was asked of one run (its cell), what came of it, and how it is named, field by field.
+/// Everything downstream (JSON Lines, CSV, expectations, tables) goes through `for_each_field`, so a field is added here
+/// and nowhere else. SI units, radians. What does not apply is null, never zero.
+#include <cstdint>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace polhode::results {
+
+/// Version of the record's layout; a reader refuses any other.
+inline constexpr int schema = 1;
+
+/// How a run ended. Everything but `ok` counts as infinite in a ranking and stays in the table.
+enum class Status { ok, inaccurate, diverged, step_underflow, max_steps, nonlinear_fail, stalled, timeout, crashed, refused };
+
+std::string_view name_of(Status status);
+/// Throws std::invalid_argument for an unknown name.
+Status status_of(std::string_view name);
+
+/// What identifies a run: the physics, the method and its control. Two runs with equal cells must give equal results.
+struct Cell {
+  std::string problem;
+  std::string variant;      ///< canonical, e.g. "case2,g1"; empty for a problem without variants
+  std::string formulation;  ///< "quaternion", "s3", ...
+  std::string integrator;
+  std::string policy = "none";
+  std::optional<double> h;     ///< step size [s]; null for adaptive runs
+  std::optional<double> rtol;  ///< relative tolerance; null for fixed steps
+  std::optional<double> atol;  ///< absolute tolerance; null for fixed steps
+  std::map<std::string, std::vector<double>> set;  ///< parameters that differ from the problem's defaults
+  std::int64_t seed = 1;
+  double t_end = 0;  ///< [s]
+};
+
+/// The text that a cell's id is the hash of: every member, in order, numbers with 17 significant digits.
+std::string canonical_text(Cell const& cell);
+/// 16 hexadecimal digits: FNV-1a, 64 bits, of canonical_text.
+std::string cell_id(Cell const& cell);
+
+/// One of the paper's claims, held against one run.
+struct Claim {
+  std::optional<double> value;      ///< what we measured
+  std::optional<double> published;  ///< what is printed; null if the claim is a statement
+  std::string verdict;              ///< "reproduced", "not reproduced", or a short reason
+};
+
+/// CPU time of one solve [s]: median and bootstrap interval over repetitions.
+struct CpuTime {
+  double median = 0, low = 0, high = 0;
+  int repetitions = 0;
+};
+
+/// One run.
+struct Record {
+  std::string cell;   ///< cell_id of `of`
+  std::string build;  ///< id of the binary that made it
+  Cell of;            ///< what was asked
+
+  Status status = Status::ok;
+  std::string reason;  ///< why not ok, in words
+
+  // Work: deterministic, so it gates.
+  std::optional<std::int64_t> steps, rejected, evaluations, jacobians, iterations, controller_calls, events_located,
+      projections;
+
+  // Norm drift: raw = before projection, without prefix = delivered. See README.md for the definition per space.
+  std::optional<double> norm_drift_raw_max, norm_drift_max, norm_drift_final, norm_drift_rms, norm_growth_exponent,
+      projection_work;
+
+  // Accuracy against the certified reference.
+  std::optional<double> attitude_error_max, attitude_error_end, attitude_error_l2;  ///< [rad]
+  std::optional<double> rate_error_max, rate_error_end;                             ///< relative to max |omega_ref|
+
+  // Invariants of a torque-free body: relative; the direction of the angular momentum in rad.
+  std::optional<double> energy_drift_max, momentum_drift_max, momentum_direction_max;
+
+  std::string reference;                ///< id of the reference
+  std::optional<double> reference_bar;  ///< its error bar [rad]
+
+  std::map<std::string, Claim> claims;
+  std::optional<CpuTime> cpu_time_s;
+  std::optional<double> allocations_per_step;
+};
+
+/// Calls f(name, unit, member) for every field of a record, in the order of the schema ("" = dimensionless or text).
+/// R is Record or Record const. `visit` sees std::string, Status, the optionals, the map of claims and of `set`.
+template <class R, class Visit>
+void for_each_field(R& r, Visit&& visit) {
+  visit("cell", "", r.cell);
+  visit("build", "", r.build);
+  visit("problem", "", r.of.problem);
+  visit("variant", "", r.of.variant);
+  visit("formulation", "", r.of.formulation);
+  visit("integrator", "", r.of.integrator);
+  visit("policy", "", r.of.policy);
+  visit("h", "s", r.of.h);
+  visit("rtol", "", r.of.rtol);
+  visit("atol", "", r.of.atol);
+  visit("set", "", r.of.set);
+  visit("seed", "", r.of.seed);
+  visit("t_end", "s", r.of.t_end);
+  visit("status", "", r.status);
+  visit("reason", "", r.reason);
+  visit("steps", "", r.steps);
+  visit("rejected", "", r.rejected);
+  visit("evaluations", "", r.evaluations);
+  visit("jacobians", "", r.jacobians);
+  visit("iterations", "", r.iterations);
+  visit("controller_calls", "", r.controller_calls);
+  visit("events_located", "", r.events_located);
+  visit("projections", "", r.projections);
+  visit("norm_drift_raw_max", "", r.norm_drift_raw_max);
+  visit("norm_drift_max", "", r.norm_drift_max);
+  visit("norm_drift_final", "", r.norm_drift_final);
+  visit("norm_drift_rms", "", r.norm_drift_rms);
+  visit("norm_growth_exponent", "", r.norm_growth_exponent);
+  visit("projection_work", "", r.projection_work);
+  visit("attitude_error_max", "rad", r.attitude_error_max);
+  visit("attitude_error_end", "rad", r.attitude_error_end);
+  visit("attitude_error_l2", "rad", r.attitude_error_l2);
+  visit("rate_error_max", "", r.rate_error_max);
+  visit("rate_error_end", "", r.rate_error_end);
+  visit("energy_drift_max", "", r.energy_drift_max);
+  visit("momentum_drift_max", "", r.momentum_drift_max);
+  visit("momentum_direction_max", "rad", r.momentum_direction_max);
+  visit("reference", "", r.reference);
+  visit("reference_bar", "rad", r.reference_bar);
+  visit("claims", "", r.claims);
+  visit("cpu_time_s", "s", r.cpu_time_s);
+  visit("allocations_per_step", "", r.allocations_per_step);
+}
+
+/// A sampled history of one run, for figures: row i is (columns[0] at time i, ...). Column 0 is t [s].
+struct Series {
+  std::string cell;
+  std::string name;  ///< "drift" or "history"
+  std::vector<std::string> columns;
+  std::vector<std::string> units;
+  std::vector<std::vector<double>> rows;
+};
+
+/// Where and how a file of records was made. Free-form by design: what the machine cannot tell is absent.
+using Meta = std::map<std::string, std::string>;
+
+nlohmann::json to_json(Record const& record);
+nlohmann::json to_json(Series const& series);
+nlohmann::json to_json(Meta const& meta);
+/// Throw std::invalid_argument that names the field that is missing, unknown or of the wrong type.
+Record record_from_json(nlohmann::json const& json);
+Series series_from_json(nlohmann::json const& json);
+Meta meta_from_json(nlohmann::json const& json);
+
+}  // namespace polhode::results

@@ -1,0 +1,53 @@
+#pragma once
+/// A result folder: JSON Lines files, one per writing process, append-only, every record on disk before it counts.
+///   {"kind":"meta",...}      once, first: provenance
+///   {"kind":"begin",...}     a cell starts;  a begin without its run means that the process died in that cell
+///   {"kind":"series",...}    histories for figures, before the run they belong to
+///   {"kind":"run",...}       a cell is done: the acknowledgement
+/// A torn last line is what a kill leaves: it is forgiven, and cut off before more is written. Any other damage is an error.
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "results/record.hpp"
+
+namespace polhode::results {
+
+/// A file that cannot be read or written, or is damaged; what() names file, line and what is wrong.
+struct StoreError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// Everything that a folder (or one file) holds. A cell that was run more than once by a build keeps its last run.
+struct Contents {
+  std::vector<Meta> metas;             ///< one per file, in file order
+  std::vector<Record> records;         ///< in order of first appearance
+  std::vector<Series> series;
+  std::vector<std::string> unfinished; ///< cells with a begin and no run after it
+};
+
+/// Reads every *.jsonl in `path` (a folder), or `path` itself (a file). Throws StoreError.
+Contents read(std::filesystem::path const& path);
+
+/// Appends to one file. Each call returns after the line is on disk (fsync). Throws StoreError; what was acknowledged stays.
+class Writer {
+ public:
+  /// Opens `file`, creates it with `meta` first, or continues it after cutting a torn last line.
+  Writer(std::filesystem::path const& file, Meta const& meta);
+  void begin(std::string const& cell, std::string const& build);
+  void series(Series const& series);
+  void run(Record const& record);
+
+ private:
+  void append(std::string const& line);
+  struct Close {
+    void operator()(std::FILE* f) const { std::fclose(f); }
+  };
+  std::filesystem::path file_;
+  std::unique_ptr<std::FILE, Close> out_;
+};
+
+}  // namespace polhode::results
