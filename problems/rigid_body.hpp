@@ -1,0 +1,146 @@
+#pragma once
+/// One rigid body under one controller: Euler's equation in body axes,  J omega' = J omega x omega + torque.
+#include <string>
+#include <vector>
+
+#include "problems/controller.hpp"
+#include "problems/parameters.hpp"
+
+namespace polhode {
+
+/// Euler's equation in principal axes; 9 multiplications. sign = -1 turns J omega x omega around: the erratum of the
+/// tether paper, which prints J omega' = + omega x J omega.
+template <class R>
+struct PrincipalInertia {
+  Vec3<R> coupling;  ///< (J_y - J_z) / J_x, ... [1]
+  Vec3<R> inverse;   ///< 1 / J [1/(kg m^2)]
+
+  explicit PrincipalInertia(Vec3<R> const& J, R const& sign = R(1.0))
+      : coupling{sign * (J.y - J.z) / J.x, sign * (J.z - J.x) / J.y, sign * (J.x - J.y) / J.z},
+        inverse{R(1.0) / J.x, R(1.0) / J.y, R(1.0) / J.z} {}
+
+  template <class S>
+  POLHODE_INLINE Vec3<S> acceleration(Vec3<S> const& w) const {
+    return {coupling.x * (w.y * w.z), coupling.y * (w.z * w.x), coupling.z * (w.x * w.y)};
+  }
+  template <class S>
+  POLHODE_INLINE Vec3<S> acceleration(Vec3<S> const& w, Vec3<S> const& torque) const {
+    return {coupling.x * (w.y * w.z) + inverse.x * torque.x, coupling.y * (w.z * w.x) + inverse.y * torque.y,
+            coupling.z * (w.x * w.y) + inverse.z * torque.z};
+  }
+};
+
+/// The same for an inertia matrix that is not diagonal.
+template <class R>
+struct FullInertia {
+  Mat3<R> J, inverse;  ///< symmetric [kg m^2], [1/(kg m^2)]
+  R sign;
+
+  explicit FullInertia(Mat3<R> const& inertia, R const& s = R(1.0)) : J(inertia), sign(s) {
+    Vec3<R> const a = cross(J.e2, J.e3), b = cross(J.e3, J.e1), c = cross(J.e1, J.e2);
+    R const d = R(1.0) / dot(J.e1, a);
+    inverse = {d * a, d * b, d * c};  // rows of the inverse; symmetric, so columns too
+  }
+  template <class S>
+  Vec3<S> acceleration(Vec3<S> const& w) const {
+    return acceleration(w, Vec3<S>{S(0.0), S(0.0), S(0.0)});
+  }
+  template <class S>
+  Vec3<S> acceleration(Vec3<S> const& w, Vec3<S> const& torque) const {
+    return times(inverse, sign * cross(times(J, w), w) + torque);
+  }
+
+ private:
+  template <class S>
+  static Vec3<S> times(Mat3<R> const& m, Vec3<S> const& v) {
+    return {m.e1.x * v.x + m.e2.x * v.y + m.e3.x * v.z, m.e1.y * v.x + m.e2.y * v.y + m.e3.y * v.z,
+            m.e1.z * v.x + m.e2.z * v.y + m.e3.z * v.z};
+  }
+};
+
+/// The field: attitude space A over scalar S, an inertia and a controller.
+/// state   attitude x omega [rad/s, body]
+template <Scalar S, template <class> class A, class Inertia, Controller Control>
+  requires Attitude<A<S>>
+struct ControlledBody {
+  using Space = RigidBody<A<S>>;
+  using State = Point<Space>;
+
+  Inertia inertia;
+  Control control;
+  State start;
+  Vec3<S> held{S(0.0), S(0.0), S(0.0)};  ///< the torque of the last sample [N m]
+
+  Velocity<Space> operator()(S const& t, State const& x) const {
+    if constexpr (std::same_as<Control, NoTorque<S>>)
+      return {x.second, inertia.acceleration(x.second)};
+    else if constexpr (Control::sampled)
+      return {x.second, inertia.acceleration(x.second, held)};
+    else
+      return {x.second, inertia.acceleration(x.second, control.torque(t, A<S>::attitude(x.first), x.second))};
+  }
+  State initial() const { return start; }
+
+  void sample(Real<S> const& t, State const& x)
+    requires(Control::sampled)
+  {
+    held = control.torque(t, A<S>::attitude(x.first), x.second);
+  }
+  void show(State const& x, std::span<double> out) const
+    requires ShowingController<Control>
+  {
+    control.show(A<S>::attitude(x.first), x.second, out);
+  }
+};
+
+/// What every one-body problem has: inertia and initial data, as parameters.
+struct BodyParameters {
+  std::vector<double> inertia{100, 120, 110};         ///< 3 principal moments, or xx yy zz xy xz yz [kg m^2]
+  std::vector<double> q0{0.227, 0.383, 0.227, 0.866};  ///< scalar last; normalised unless `raw_q0`
+  std::vector<double> omega0{degree * 10, degree * 10, degree * 10};  ///< [rad/s, body]
+  bool raw_q0 = false;        ///< keep |q0| as given
+  double coriolis_sign = 1;   ///< -1: the sign that the tether paper prints
+
+  static constexpr double degree = 3.14159265358979323846 / 180;
+
+  std::vector<Parameter> list() {
+    return {{"inertia", "kg m^2", Rule::inertia, inertia},
+            {"q0", "", Rule::unit_quaternion, q0},
+            {"omega0", "rad/s", Rule::finite, omega0}};
+  }
+  bool principal() const { return inertia.size() == 3; }
+
+  /// The inertia matrix [kg m^2].
+  template <class R>
+  Mat3<R> matrix() const {
+    auto const at = [&](std::size_t i) { return i < inertia.size() ? R(inertia[i]) : R(0.0); };
+    return {{at(0), at(3), at(4)}, {at(3), at(1), at(5)}, {at(4), at(5), at(2)}};
+  }
+  /// Initial attitude in scalar S, normalised in that scalar.
+  template <class S>
+  Quat<S> attitude() const {
+    Quat<S> const q{S(q0[0]), S(q0[1]), S(q0[2]), S(q0[3])};
+    return raw_q0 ? q : normalised(q);
+  }
+  template <class S>
+  Vec3<S> rate() const {
+    return {S(omega0[0]), S(omega0[1]), S(omega0[2])};
+  }
+};
+
+/// The field of `body` under `control`. Principal: 3 moments, the fast form; otherwise the full matrix.
+template <Scalar S, template <class> class A, bool principal, Controller Control>
+auto controlled_body(BodyParameters const& body, Control const& control) {
+  using R = Real<S>;
+  Pair<Point<A<S>>, Vec3<S>> const start{A<S>::from_attitude(body.attitude<S>()), body.rate<S>()};
+  if constexpr (principal) {
+    PrincipalInertia<R> const inertia({R(body.inertia[0]), R(body.inertia[1]), R(body.inertia[2])},
+                                      R(body.coriolis_sign));
+    return ControlledBody<S, A, PrincipalInertia<R>, Control>{inertia, control, start};
+  } else {
+    FullInertia<R> const inertia(body.matrix<R>(), R(body.coriolis_sign));
+    return ControlledBody<S, A, FullInertia<R>, Control>{inertia, control, start};
+  }
+}
+
+}  // namespace polhode
