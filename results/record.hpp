@@ -1,7 +1,7 @@
 #pragma once
 /// The record: what was asked of one run (its cell), what came of it, and how it is named, field by field.
-/// Everything downstream (JSON Lines, CSV, expectations, tables) goes through `for_each_field`, so a field is added here
-/// and nowhere else. SI units, radians. What does not apply is null, never zero.
+/// Everything downstream (JSON Lines, CSV, expectations, tables) goes through `for_each_field`, so a field is added
+/// here and nowhere else. SI units, radians. What does not apply is null, never zero.
 #include <cstdint>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
@@ -16,7 +16,18 @@ namespace polhode::results {
 inline constexpr int schema = 1;
 
 /// How a run ended. Everything but `ok` counts as infinite in a ranking and stays in the table.
-enum class Status { ok, inaccurate, diverged, step_underflow, max_steps, nonlinear_fail, stalled, timeout, crashed, refused };
+enum class Status {
+  ok,
+  inaccurate,
+  diverged,
+  step_underflow,
+  max_steps,
+  nonlinear_fail,
+  stalled,
+  timeout,
+  crashed,
+  refused
+};
 
 std::string_view name_of(Status status);
 /// Throws std::invalid_argument for an unknown name.
@@ -29,15 +40,32 @@ struct Cell {
   std::string formulation;  ///< "quaternion", "s3", ...
   std::string integrator;
   std::string policy = "none";
-  std::optional<double> h;     ///< step size [s]; null for adaptive runs
-  std::optional<double> rtol;  ///< relative tolerance; null for fixed steps
-  std::optional<double> atol;  ///< absolute tolerance; null for fixed steps
+  std::optional<double> h;                         ///< step size [s]; null for adaptive runs
+  std::optional<double> rtol;                      ///< relative tolerance; null for fixed steps
+  std::optional<double> atol;                      ///< absolute tolerance; null for fixed steps
   std::map<std::string, std::vector<double>> set;  ///< parameters that differ from the problem's defaults
   std::int64_t seed = 1;
   double t_end = 0;  ///< [s]
 };
 
-/// The text that a cell's id is the hash of: every member, in order, numbers with 17 significant digits.
+/// Calls f(name, unit, member) for every member of a cell, in the order of the schema; C is Cell or Cell const.
+template <class C, class Visit>
+void for_each_cell_field(C& cell, Visit&& visit) {
+  visit("problem", "", cell.problem);
+  visit("variant", "", cell.variant);
+  visit("formulation", "", cell.formulation);
+  visit("integrator", "", cell.integrator);
+  visit("policy", "", cell.policy);
+  visit("h", "s", cell.h);
+  visit("rtol", "", cell.rtol);
+  visit("atol", "", cell.atol);
+  visit("set", "", cell.set);
+  visit("seed", "", cell.seed);
+  visit("t_end", "s", cell.t_end);
+}
+
+/// The text that a cell's id is the hash of: every member, in order, numbers with 17 significant digits. A number that
+/// is not finite counts as null, as in JSON, so that an id outlives being written and read.
 std::string canonical_text(Cell const& cell);
 /// 16 hexadecimal digits: FNV-1a, 64 bits, of canonical_text.
 std::string cell_id(Cell const& cell);
@@ -93,17 +121,7 @@ template <class R, class Visit>
 void for_each_field(R& r, Visit&& visit) {
   visit("cell", "", r.cell);
   visit("build", "", r.build);
-  visit("problem", "", r.of.problem);
-  visit("variant", "", r.of.variant);
-  visit("formulation", "", r.of.formulation);
-  visit("integrator", "", r.of.integrator);
-  visit("policy", "", r.of.policy);
-  visit("h", "s", r.of.h);
-  visit("rtol", "", r.of.rtol);
-  visit("atol", "", r.of.atol);
-  visit("set", "", r.of.set);
-  visit("seed", "", r.of.seed);
-  visit("t_end", "s", r.of.t_end);
+  for_each_cell_field(r.of, visit);
   visit("status", "", r.status);
   visit("reason", "", r.reason);
   visit("steps", "", r.steps);
@@ -147,12 +165,27 @@ struct Series {
 /// Where and how a file of records was made. Free-form by design: what the machine cannot tell is absent.
 using Meta = std::map<std::string, std::string>;
 
-nlohmann::json to_json(Record const& record);
-nlohmann::json to_json(Series const& series);
-nlohmann::json to_json(Meta const& meta);
-/// Throw std::invalid_argument that names the field that is missing, unknown or of the wrong type.
-Record record_from_json(nlohmann::json const& json);
-Series series_from_json(nlohmann::json const& json);
-Meta meta_from_json(nlohmann::json const& json);
+/// A run has begun. Without its run after it, the process died in that cell.
+struct Begin {
+  std::string cell;
+  std::string build;
+};
+
+/// The keys stand in the order of the schema; what is empty or not finite is null.
+nlohmann::ordered_json to_json(Record const& record);
+nlohmann::ordered_json to_json(Begin const& begin);
+/// Throws std::invalid_argument unless every column has a unit and every row a number per column.
+nlohmann::ordered_json to_json(Series const& series);
+/// Throws std::invalid_argument for the keys "schema" and "kind", which are the record's own.
+nlohmann::ordered_json to_json(Meta const& meta);
+
+/// "run", "begin", "series" or "meta". Throws std::invalid_argument for anything else and for another schema.
+std::string kind_of(nlohmann::ordered_json const& json);
+/// Throw std::invalid_argument that names the field that is missing, unknown or of the wrong type, and what would be
+/// right. A null reads as an empty optional, or as NaN where a number must stand.
+Record record_from_json(nlohmann::ordered_json const& json);
+Begin begin_from_json(nlohmann::ordered_json const& json);
+Series series_from_json(nlohmann::ordered_json const& json);
+Meta meta_from_json(nlohmann::ordered_json const& json);
 
 }  // namespace polhode::results

@@ -4,7 +4,8 @@
 ///   {"kind":"begin",...}     a cell starts;  a begin without its run means that the process died in that cell
 ///   {"kind":"series",...}    histories for figures, before the run they belong to
 ///   {"kind":"run",...}       a cell is done: the acknowledgement
-/// A torn last line is what a kill leaves: it is forgiven, and cut off before more is written. Any other damage is an error.
+/// A torn last line is what a kill leaves: it is forgiven, and cut off before more is written. Any other damage is an
+/// error.
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -23,19 +24,22 @@ struct StoreError : std::runtime_error {
 
 /// Everything that a folder (or one file) holds. A cell that was run more than once by a build keeps its last run.
 struct Contents {
-  std::vector<Meta> metas;             ///< one per file, in file order
-  std::vector<Record> records;         ///< in order of first appearance
-  std::vector<Series> series;
-  std::vector<std::string> unfinished; ///< cells with a begin and no run after it
+  std::vector<Meta> metas;      ///< one per file, in file order; a file that was killed before its meta has none
+  std::vector<Record> records;  ///< in order of first appearance
+  std::vector<Series> series;   ///< a cell that was run more than once keeps its last series of each name
+  std::vector<std::string> unfinished;  ///< cells with a begin and no run of the same build after it
 };
 
-/// Reads every *.jsonl in `path` (a folder), or `path` itself (a file). Throws StoreError.
+/// Reads every *.jsonl in `path` (a folder), in the order of their names, or `path` itself (a file). Throws StoreError.
 Contents read(std::filesystem::path const& path);
 
-/// Appends to one file. Each call returns after the line is on disk (fsync). Throws StoreError; what was acknowledged stays.
+/// Appends to one file. Each call returns after the line is on disk (fsync). Throws StoreError; what was acknowledged
+/// stays. What a reader would refuse (a run whose cell is not its cell_id, a ragged series) throws
+/// std::invalid_argument.
 class Writer {
  public:
-  /// Opens `file`, creates it with `meta` first, or continues it after cutting a torn last line.
+  /// Opens `file`, creates it with `meta` first, or continues it after cutting a torn last line. A file that
+  /// does not begin with a meta is somebody else's: it is refused and left as it is.
   Writer(std::filesystem::path const& file, Meta const& meta);
   void begin(std::string const& cell, std::string const& build);
   void series(Series const& series);
