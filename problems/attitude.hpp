@@ -3,7 +3,8 @@
 ///
 /// The convention, stated once for the whole project: Hamilton product, scalar last, q maps body components to inertial
 /// (or orbital) ones, q' = 1/2 q (omega, 0) with omega the body rate [rad/s, body axes].
-/// Beware: the tether paper's A(q) is the transpose of matrix(q); Markley & Crassidis (2014) multiply in the opposite order.
+/// Beware: the tether paper's A(q) is the transpose of matrix(q); Markley & Crassidis (2014) multiply in the opposite
+/// order.
 #include "problems/vectors.hpp"
 
 namespace polhode {
@@ -29,8 +30,8 @@ POLHODE_INLINE Quat<S> quaternion_rate(Quat<S> const& q, Vec3<S> const& omega) {
   return {q.w * h.x + q.y * h.z - q.z * h.y, q.w * h.y + q.z * h.x - q.x * h.z, q.w * h.z + q.x * h.y - q.y * h.x,
           -(q.x * h.x) - q.y * h.y - q.z * h.z};
 }
-/// q / |q|: the point of the unit sphere nearest to q. The tether paper's explicit projection, eq. (16): lambda = 1 - |q|,
-/// q / (1 - lambda).
+/// q / |q|: the point of the unit sphere nearest to q. The tether paper's explicit projection, eq. (16): lambda = 1 -
+/// |q|, q / (1 - lambda).
 template <class S>
 POLHODE_INLINE Quat<S> normalised(Quat<S> const& q) {
   S const norm = sqrt(dot(q, q));

@@ -15,17 +15,17 @@ using ControlTime = std::conditional_t<C::sampled, Real<typename C::Scalar>, typ
 /// Controller::sampled == true: asked once a sample period, held until the next (zero-order hold); it may remember.
 template <class C>
 concept Controller = Scalar<typename C::Scalar> &&
-                     requires(C c, ControlTime<C> t, Quat<typename C::Scalar> q, Vec3<typename C::Scalar> w) {
-                       { C::sampled } -> std::convertible_to<bool>;
-                       { c.torque(t, q, w) } -> std::same_as<Vec3<typename C::Scalar>>;
-                     };
+    requires(C c, ControlTime<C> t, Quat<typename C::Scalar> q, Vec3<typename C::Scalar> w) {
+  { C::sampled } -> std::convertible_to<bool>;
+  { c.torque(t, q, w) } -> std::same_as<Vec3<typename C::Scalar>>;
+};
 
 /// A controller that shows quantities of its own: show(q, omega, out) writes one number a column.
 template <class C>
-concept ShowingController =
-    Controller<C> && requires(C const c, Quat<typename C::Scalar> q, Vec3<typename C::Scalar> w, std::span<double> out) {
-      c.show(q, w, out);
-    };
+concept ShowingController = Controller<C> &&
+    requires(C const c, Quat<typename C::Scalar> q, Vec3<typename C::Scalar> w, std::span<double> out) {
+  c.show(q, w, out);
+};
 
 /// No torque at all: the free body.
 template <Scalar S>

@@ -40,8 +40,8 @@ struct ProblemInfo {
 
 /// Columns against time, as `simulate` prints them: rows[i] belongs to times[i].
 struct History {
-  std::vector<double> times;               ///< [s]
-  std::vector<std::string> columns;        ///< q1 q2 q3 q4 wx wy wz and the problem's own
+  std::vector<double> times;         ///< [s]
+  std::vector<std::string> columns;  ///< q1 q2 q3 q4 wx wy wz and the problem's own
   std::vector<std::vector<double>> rows;
 
   /// The values of one column. Throws std::out_of_range for an unknown name.

@@ -1,7 +1,8 @@
 #pragma once
-/// A problem with its type forgotten, counting its evaluations. Methods are then compiled once per space for all problems
-/// on it: for measured runs (where counting is wanted and speed is not), references in long floats, and inertia matrices.
-/// Costs a virtual call per evaluation: an RK4 step of a free body takes 2.4x as long. Timed runs use the typed field.
+/// A problem with its type forgotten, counting its evaluations. Methods are then compiled once per space for all
+/// problems on it: for measured runs (where counting is wanted and speed is not), references in long floats, and
+/// inertia matrices. Costs a virtual call per evaluation: an RK4 step of a free body takes 2.4x as long. Timed runs use
+/// the typed field.
 #include <cstdint>
 #include <memory>
 #include <span>

@@ -15,11 +15,7 @@ struct Jet {
 
   Jet() = default;
   Jet(R const& constant) { c[0] = constant; }
-  Jet(double constant)
-    requires(!std::same_as<R, double>)
-  {
-    c[0] = R(constant);
-  }
+  Jet(double constant) requires(!std::same_as<R, double>) { c[0] = R(constant); }
 
   R const& operator[](int k) const { return c[std::size_t(k)]; }
   R& operator[](int k) { return c[std::size_t(k)]; }

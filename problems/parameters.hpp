@@ -95,7 +95,8 @@ inline void Parameter::check_inertia(std::vector<double> const& v) const {
     J(0, 2) = J(2, 0) = v[4];
     J(1, 2) = J(2, 1) = v[5];
   }
-  Eigen::Vector3d const principal = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(J, Eigen::EigenvaluesOnly).eigenvalues();
+  Eigen::Vector3d const principal =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(J, Eigen::EigenvaluesOnly).eigenvalues();
   if (!(principal[0] > 0)) refuse("principal moments of inertia must be greater than 0 kg m^2");
   double const rounding = 1e-12 * principal[2];
   if (principal[2] > principal[0] + principal[1] + rounding)

@@ -81,25 +81,21 @@ struct ControlledBody {
   }
   State initial() const { return start; }
 
-  void sample(Real<S> const& t, State const& x)
-    requires(Control::sampled)
-  {
+  void sample(Real<S> const& t, State const& x) requires(Control::sampled) {
     held = control.torque(t, A<S>::attitude(x.first), x.second);
   }
-  void show(State const& x, std::span<double> out) const
-    requires ShowingController<Control>
-  {
+  void show(State const& x, std::span<double> out) const requires ShowingController<Control> {
     control.show(A<S>::attitude(x.first), x.second, out);
   }
 };
 
 /// What every one-body problem has: inertia and initial data, as parameters.
 struct BodyParameters {
-  std::vector<double> inertia{100, 120, 110};         ///< 3 principal moments, or xx yy zz xy xz yz [kg m^2]
+  std::vector<double> inertia{100, 120, 110};          ///< 3 principal moments, or xx yy zz xy xz yz [kg m^2]
   std::vector<double> q0{0.227, 0.383, 0.227, 0.866};  ///< scalar last; normalised unless `raw_q0`
   std::vector<double> omega0{degree * 10, degree * 10, degree * 10};  ///< [rad/s, body]
-  bool raw_q0 = false;        ///< keep |q0| as given
-  double coriolis_sign = 1;   ///< -1: the sign that the tether paper prints
+  bool raw_q0 = false;                                                ///< keep |q0| as given
+  double coriolis_sign = 1;                                           ///< -1: the sign that the tether paper prints
 
   static constexpr double degree = 3.14159265358979323846 / 180;
 

@@ -54,22 +54,42 @@ concept Scalar = std::copyable<S> && std::constructible_from<S, double> && requi
 };
 
 // Named here so that templates in this namespace find them for types without argument-dependent lookup.
-inline double sqrt(double x) { return std::sqrt(x); }
-inline double sin(double x) { return std::sin(x); }
-inline double cos(double x) { return std::cos(x); }
-inline double atan2(double y, double x) { return std::atan2(y, x); }
-inline Quad sqrt(Quad x) { return sqrtq(x); }
-inline Quad sin(Quad x) { return sinq(x); }
-inline Quad cos(Quad x) { return cosq(x); }
-inline Quad atan2(Quad y, Quad x) { return atan2q(y, x); }
+inline double sqrt(double x) {
+  return std::sqrt(x);
+}
+inline double sin(double x) {
+  return std::sin(x);
+}
+inline double cos(double x) {
+  return std::cos(x);
+}
+inline double atan2(double y, double x) {
+  return std::atan2(y, x);
+}
+inline Quad sqrt(Quad x) {
+  return sqrtq(x);
+}
+inline Quad sin(Quad x) {
+  return sinq(x);
+}
+inline Quad cos(Quad x) {
+  return cosq(x);
+}
+inline Quad atan2(Quad y, Quad x) {
+  return atan2q(y, x);
+}
 
 /// a if the mask is set, else b.
 template <class S>
 POLHODE_INLINE constexpr S select(bool mask, S const& a, S const& b) {
   return mask ? a : b;
 }
-POLHODE_INLINE double abs_of(double a) { return std::fabs(a); }
-POLHODE_INLINE Quad abs_of(Quad a) { return fabsq(a); }
+POLHODE_INLINE double abs_of(double a) {
+  return std::fabs(a);
+}
+POLHODE_INLINE Quad abs_of(Quad a) {
+  return fabsq(a);
+}
 template <class S>
 POLHODE_INLINE S abs_of(S const& a) {
   return select(a < S(0.0), S(-a), a);
@@ -111,7 +131,8 @@ template <int n, class F>
 POLHODE_INLINE constexpr void unroll(F&& f) {
   [&]<int... i>(std::integer_sequence<int, i...>) POLHODE_LAMBDA {
     (f(std::integral_constant<int, i>{}), ...);
-  }(std::make_integer_sequence<int, n>{});
+  }
+  (std::make_integer_sequence<int, n>{});
 }
 
 }  // namespace polhode

@@ -6,13 +6,15 @@
 ///   local(x, y)             the coordinates of y in the chart around x
 ///   rate(x, v)              the chart's velocity at its centre when x moves with velocity v
 ///   chart_rate(x, u, v)     the same at u:  dexp^-1_u v on a group | q omega / 2 | v
-///   retract_exactly(...)    retract by increments, the rounding error carried to the next step where addition allows it
-///   defect(x)               how far x is from the constraint: |q.q - 1| | Frobenius norm of R^T R - 1 | 0
+///   retract_exactly(...)    retract by increments, the rounding error carried to the next step where addition allows
+///   it defect(x)               how far x is from the constraint: |q.q - 1| | Frobenius norm of R^T R - 1 | 0
 ///   project(x)              the nearest point without defect; returns the distance that it moved
 ///
 /// Laws (space_laws.hpp checks them with dual numbers):
-///   1. retract(x, centre(x)) = x         2. local(x, retract(x, u)) = u        3. rate(x, v) = chart_rate(x, centre(x), v)
-///   4. moving u by chart_rate(x, u, v) in the chart around x is moving y = retract(x, u) by rate(y, v) in its own chart
+///   1. retract(x, centre(x)) = x         2. local(x, retract(x, u)) = u        3. rate(x, v) = chart_rate(x,
+///   centre(x), v)
+///   4. moving u by chart_rate(x, u, v) in the chart around x is moving y = retract(x, u) by rate(y, v) in its own
+///   chart
 /// So Runge-Kutta in the chart around x is the classical one on a flat space, at no cost (u starts at x: the sum is the
 /// textbook's), and Munthe-Kaas on a group.   Source: Munthe-Kaas (1998), BIT 38, 92
 #include <string_view>
@@ -152,7 +154,8 @@ struct SO3 : Rotations<S, Mat3<S>> {
   static constexpr bool constrained = true;
   static POLHODE_INLINE Mat3<S> retract(Mat3<S> const& m, Vec3<S> const& u) { return m * matrix(exp_quaternion(u)); }
   static Vec3<S> local(Mat3<S> const& m, Mat3<S> const& y) {
-    return log_quaternion(quaternion(Mat3<S>{transposed_times(m, y.e1), transposed_times(m, y.e2), transposed_times(m, y.e3)}));
+    return log_quaternion(
+        quaternion(Mat3<S>{transposed_times(m, y.e1), transposed_times(m, y.e2), transposed_times(m, y.e3)}));
   }
   static POLHODE_INLINE void retract_exactly(Mat3<S>& m, Vec3<S> const& sum, Vec3<S> const& rest, Vec3<S>&) {
     m = retract(m, sum + rest);

@@ -22,7 +22,7 @@ double check_space_laws(Point<M> const& x, Chart<M> const& du, Velocity<M> const
   D s(0.0);  // moves along v: d/ds at s = 0
   s.slope[0] = 1;
 
-  same(M::retract(x, M::centre(x)), x);                    // 1
+  same(M::retract(x, M::centre(x)), x);  // 1
   Chart<M> u = M::centre(x);
   add(u, 1.0, du);
   Point<M> const y = M::retract(x, u);

@@ -2,7 +2,8 @@
 /// A target captured by a tethered space robot is brought to rest with its grapple arm along the tether.
 /// Source: Xu, Wang, Deng, Li & Wei (2017), "Attitude control of targets captured by tethered space robots based on the
 ///         quaternion theory", Applied Mathematics and Mechanics 38(12), 1309, doi 10.21656/1000-0887.380168
-/// Printed: inertia, q0, omega0, |d|, thruster limit, switching angle, horizon, control laws. Reconstructed: gains, the arm
+/// Printed: inertia, q0, omega0, |d|, thruster limit, switching angle, horizon, control laws. Reconstructed: gains, the
+/// arm
 /// (-2, 0, 0) m, sampling at 0.1 s with zero-order hold.
 /// Erratum: the paper's eq. (3) has + omega x J omega. The angular momentum in space of the free body decides: it is
 /// conserved with - and drifts by up to 27% with +. Nominal is -; variant `as_printed` is +.
@@ -32,7 +33,8 @@ class TetherCapture {
         .name = "tether_capture",
         .summary = "captured target on a tether: sampled control by tension and thrusters",
         .source = "Xu et al. (2017), Applied Mathematics and Mechanics 38(12), 1309, doi 10.21656/1000-0887.380168",
-        .variants = {{"case1", "case2", "case3", "free"}, {"g1", "g2"}, {"", "as_printed"}, {"", "raw_q0"}, {"", "coupled"}},
+        .variants =
+            {{"case1", "case2", "case3", "free"}, {"g1", "g2"}, {"", "as_printed"}, {"", "raw_q0"}, {"", "coupled"}},
         .events = {"control samples"},
         .claims = {{"alpha_max", "the angle's greatest value", {}, "rad"},
                    {"omega_y_zero", "omega_y first reaches zero", {}, "s"},
@@ -78,7 +80,8 @@ class TetherCapture {
     return law;
   }
   static double coupled_period(Choice const& choice) {
-    if (!(choice.step > 0)) throw ParameterError("variant coupled ties the sample period to the step: needs fixed steps");
+    if (!(choice.step > 0))
+      throw ParameterError("variant coupled ties the sample period to the step: needs fixed steps");
     return choice.step;
   }
 

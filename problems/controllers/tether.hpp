@@ -18,19 +18,20 @@ enum class TetherCase {
 /// Numbers of the law, in plain doubles. Gains are not printed in the paper: set G1 was reconstructed.
 struct TetherLaw {
   TetherCase actuators = TetherCase::both;
-  double k_pe = 40;           ///< tension per angle [N/rad]
-  double k_de = 120;          ///< tension per angular rate [N s/rad]
-  double k_pu = 8;            ///< thruster torque per angle [N m/rad]
-  double k_du = 80;           ///< thruster torque per body rate [N m s/rad]
-  double f_max = 30;          ///< greatest tension [N]
-  double u_max = 5;           ///< greatest thruster torque, per axis [N m]
-  double switch_angle = 0;    ///< [rad]
-  double arm = 2;             ///< grapple point at (-arm, 0, 0) in body axes [m]
-  double sample_period = 0.1; ///< [s]
+  double k_pe = 40;            ///< tension per angle [N/rad]
+  double k_de = 120;           ///< tension per angular rate [N s/rad]
+  double k_pu = 8;             ///< thruster torque per angle [N m/rad]
+  double k_du = 80;            ///< thruster torque per body rate [N m s/rad]
+  double f_max = 30;           ///< greatest tension [N]
+  double u_max = 5;            ///< greatest thruster torque, per axis [N m]
+  double switch_angle = 0;     ///< [rad]
+  double arm = 2;              ///< grapple point at (-arm, 0, 0) in body axes [m]
+  double sample_period = 0.1;  ///< [s]
 };
 
-/// Sampled, zero-order hold. Remembers the last angle (for its difference quotient), what it commands, and the effort spent.
-/// alpha = angle between the arm d and the tether's direction r, both in body axes; r is fixed in the orbital frame.
+/// Sampled, zero-order hold. Remembers the last angle (for its difference quotient), what it commands, and the effort
+/// spent. alpha = angle between the arm d and the tether's direction r, both in body axes; r is fixed in the orbital
+/// frame.
 template <Scalar S>
 class TetherController {
  public:
@@ -66,12 +67,13 @@ class TetherController {
 
   /// alpha [rad], tether_force [N], torque_x, torque_y, torque_z [N m, held from now on], energy_c [N^2 m^2 s].
   static std::vector<Column> columns() {
-    return {{"alpha", "rad"},      {"tether_force", "N"}, {"torque_x", "N m"},
-            {"torque_y", "N m"},   {"torque_z", "N m"},   {"energy_c", "N^2 m^2 s"}};
+    return {{"alpha", "rad"},    {"tether_force", "N"}, {"torque_x", "N m"},
+            {"torque_y", "N m"}, {"torque_z", "N m"},   {"energy_c", "N^2 m^2 s"}};
   }
   void show(Quat<S> const& q, Vec3<S> const&, std::span<double> out) const {
     Vec3<S> const held = tether_ + thrust_;
-    double i[] = {double(geometry(q).alpha), double(tension_), double(held.x), double(held.y), double(held.z), double(effort_)};
+    double i[] = {
+        double(geometry(q).alpha), double(tension_), double(held.x), double(held.y), double(held.z), double(effort_)};
     std::copy(std::begin(i), std::end(i), out.begin());
   }
 

@@ -1,0 +1,19 @@
+#pragma once
+/// Every integrator. Adding one is a header and a line here; list, run, report, benchmarks and conformance tests
+/// follow.
+#include "integrators/gauss.hpp"
+#include "integrators/lie_group.hpp"
+#include "integrators/rivals/cvode.hpp"
+#include "integrators/rivals/odeint.hpp"
+#include "integrators/runge_kutta.hpp"
+#include "problems/catalog.hpp"
+
+namespace polhode {
+
+using OwnMethods = Types<Rk4, Dopri5,                                                 // explicit Runge-Kutta
+                         GaussEntry<1>, GaussEntry<2>, GaussEntry<3>, GaussEntry<4>,  // Gauss to round-off
+                         Gauss2Sweeps1, Gauss2Sweeps2, Gauss2Tol6,                    // and not
+                         LieEuler, Rkmk4, CommutatorFree4>;                           // Lie group
+using Rivals = Types<OdeintRk4, OdeintDopri5, Cvode<true>, Cvode<false>>;
+
+}  // namespace polhode

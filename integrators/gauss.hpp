@@ -1,0 +1,258 @@
+#pragma once
+/// Gauss collocation of order 2s in the chart around x, stages solved by fixed point to round-off, sums compensated.
+/// On flat coordinates it conserves quadratic invariants: |q|, energy and |L|, as far as the computed tableau is
+/// symplectic and the stage equations are solved. It is not symplectic in (q, omega), and does not keep the direction
+/// of L. Sources: Hairer, Lubich & Wanner, Geometric Numerical Integration, II.1.3, IV.2.1; Hairer, McLachlan &
+/// Razakarivony (2008), BIT 48, 231 (stopping rule, compensated sums); Antonana, Makazaga & Murua (2017), Numer.
+/// Algorithms 76, 861 (coefficients mu_ij = a_ij / b_j with mu_ij + mu_ji = 1 exactly). Use for long horizons and tight
+/// accuracy; not when h times the Lipschitz constant nears 1 (the fixed point diverges).
+#include "integrators/integrator.hpp"
+
+namespace polhode {
+
+/// Nodes, weights and matrix of s-stage Gauss, in quadruple precision.   HLW II.1.3; matrix by the W-transformation,
+/// Hairer & Wanner II, IV.5
+template <int s>
+struct GaussTableau {
+  std::array<Quad, s> b, c;
+  std::array<std::array<Quad, s>, s> a;
+
+  GaussTableau() {
+    std::array<Quad, s> x;
+    for (int i = 0; i < s; ++i) {
+      auto const at = std::size_t(i);
+      x[at] = root(i);
+      Quad const slope = legendre_slope(x[at]);
+      c[at] = (x[at] + 1) / 2;
+      b[at] = 1 / ((1 - x[at] * x[at]) * slope * slope);
+    }
+    for (std::size_t i = 0; i < s; ++i)
+      for (std::size_t j = 0; j < s; ++j) {
+        Quad sum = c[i];
+        for (int k = 1; k < s; ++k) sum += legendre(k, x[j]) * (legendre(k + 1, x[i]) - legendre(k - 1, x[i])) / 2;
+        a[i][j] = b[j] * sum;
+      }
+  }
+
+ private:
+  static Quad legendre(int n, Quad x) {
+    Quad before = 1, now = x;
+    if (n == 0) return before;
+    for (int k = 1; k < n; ++k) {
+      Quad const next = ((2 * k + 1) * x * now - k * before) / (k + 1);
+      before = now;
+      now = next;
+    }
+    return now;
+  }
+  static Quad legendre_slope(Quad x) { return s * (x * legendre(s, x) - legendre(s - 1, x)) / (x * x - 1); }
+  /// The i-th root of the Legendre polynomial of degree s, ascending, by Newton.
+  static Quad root(int i) {
+    Quad x = -std::cos(3.14159265358979323846 * (i + 0.75) / (s + 0.5));
+    for (int sweep = 0; sweep < 8; ++sweep) x -= legendre(s, x) / legendre_slope(x);
+    return x;
+  }
+};
+
+/// Coefficients in scalar R in the form that keeps the symplecticity condition exactly: mu_ii = 1/2, mu_ij + mu_ji = 1.
+/// The step uses L_j = (h b_j) f(Y_j), Y_i = y + sum_j mu_ij L_j, y' = y + sum_j L_j: one table, never a and b apart.
+template <class R, int s>
+struct GaussMu {
+  std::array<R, s> b, c;
+  std::array<std::array<R, s>, s> mu;
+
+  GaussMu() {
+    GaussTableau<s> const exact;
+    for (std::size_t i = 0; i < s; ++i) {
+      b[i] = R(exact.b[i]);
+      c[i] = R(exact.c[i]);
+      mu[i][i] = R(0.5);
+      for (std::size_t j = 0; j < i; ++j) {
+        mu[i][j] = R(exact.a[i][j] / exact.b[j]);
+        mu[j][i] = R(1.0) - mu[i][j];
+      }
+    }
+  }
+};
+
+/// order 2s, s stages; symmetric; keeps the norm, energy and |L| of a free body on flat coordinates.
+/// One sweep evaluates each stage once, from the newest values of the others. Iteration ends when no component of the
+/// stages sets a new minimum of its change, twice running: there is nothing more to gain in this arithmetic.
+template <int s>
+struct Gauss {
+  template <class R>
+  struct Method {
+    GaussMu<R, s> table;
+
+    /// carry: what rounding took from the state, in chart coordinates; belongs to x + carry.
+    template <Space M>
+    struct Memory {
+      Chart<M> carry = zero<Chart<M>>();
+      std::int64_t iterations = 0;
+      void restart() { carry = zero<Chart<M>>(); }
+    };
+    template <Space M>
+    struct Frame {
+      std::array<Chart<M>, s> increment, stage;
+    };
+
+    template <Problem P, class M = typename P::Space, class S = typename M::Scalar>
+    POLHODE_INLINE void step(P const& p, S const& t, R const& h, Point<M>& x, Frame<M>& frame,
+                             Memory<M>& memory) const {
+      auto& L = frame.increment;
+      auto& Y = frame.stage;
+      std::array<R, s> hb, hc;
+      unroll<s>([&](auto i) POLHODE_LAMBDA {
+        hb[i] = h * table.b[i];
+        hc[i] = h * table.c[i];
+      });
+      Chart<M> const slope = M::rate(x, p(t, x));
+      unroll<s>([&](auto i) POLHODE_LAMBDA {
+        L[i] = scaled(hb[i], slope);
+        Y[i] = zero<Chart<M>>();
+      });
+
+      Stagnation<Chart<M>> stagnation;
+      for (int sweep = 0; sweep < most_sweeps; ++sweep) {
+        Chart<M> change = zero<Chart<M>>();
+        unroll<s>([&](auto i) POLHODE_LAMBDA {
+          Chart<M> u = memory.carry;
+          unroll<s>([&](auto j) POLHODE_LAMBDA { add(u, table.mu[i][j], L[j]); });
+          Chart<M>::each([](S& most, S const& now, S const& before)
+                             POLHODE_LAMBDA { most = max_of(most, abs_of(S(now - before))); },
+                         change, u, Y[i]);
+          Y[i] = u;
+          Chart<M> at = M::centre(x);
+          add(at, u);
+          L[i] = scaled(hb[i], M::chart_rate(x, at, p(S(t + hc[i]), M::retract(x, at))));
+        });
+        ++memory.iterations;
+        if (stagnation.reached(change)) break;
+      }
+
+      Chart<M> sum = L[0], rest = memory.carry;
+      unroll<s - 1>([&](auto j) POLHODE_LAMBDA {
+        Chart<M>::each(
+            [](S& total, S& lost, S const& term) POLHODE_LAMBDA {
+              auto const exact = two_sum(total, term);
+              total = exact.sum;
+              lost += exact.rest;
+            },
+            sum, rest, L[j + 1]);
+      });
+      M::retract_exactly(x, sum, rest, memory.carry);
+    }
+  };
+
+  template <Problem P>
+  auto bind(P const& p, FixedStep control, NormPolicy policy) const {
+    using R = Real<typename P::Space::Scalar>;
+    return Fixed<Method<R>, P>(Method<R>{}, p, control, policy);
+  }
+
+ private:
+  static constexpr int most_sweeps = 200;
+
+  /// True when the changes of all components are 0, or none of them was smaller than ever, twice running.
+  template <class V>
+  struct Stagnation {
+    V least;
+    int idle = 0;
+    bool first = true;
+    POLHODE_INLINE bool reached(V const& change) {
+      bool smaller = first, still = true;
+      if (first) least = change;
+      V::each(
+          [&](auto& low, auto const& now) POLHODE_LAMBDA {
+            using S = std::decay_t<decltype(now)>;
+            still = still && now == S(0.0);
+            smaller = smaller || now < low;
+            low = now < low ? now : low;
+          },
+          least, change);
+      first = false;
+      idle = smaller ? 0 : idle + 1;
+      return still || idle == 2;
+    }
+  };
+};
+
+template <int s>
+struct GaussEntry : Gauss<s> {
+  static_assert(1 <= s && s <= 8);
+  static constexpr std::string_view names[] = {"gauss1", "gauss2", "gauss3", "gauss4",
+                                               "gauss5", "gauss6", "gauss7", "gauss8"};
+  static constexpr MethodInfo info{
+      .name = names[s - 1],
+      .family = Family::gauss,
+      .order = 2 * s,
+      .preserves = keeps_norm | keeps_energy | keeps_momentum | is_symmetric,
+      .source = "Hairer, Lubich & Wanner, II.1.3; round-off: Hairer, McLachlan & Razakarivony (2008)",
+      .pitfall = "on (q, omega) not symplectic: the direction of L errs by O(h^2s)"};
+};
+
+/// How a foil stops its iteration.
+enum class Stop { after_sweeps, below_tolerance };
+
+/// Two-stage Gauss as the literature often runs it: start from k1 = k2 = f(y), Jacobi sweeps, stop early. A foil: the
+/// stage equations are not solved, so nothing is conserved.
+///   after_sweeps      `limit` sweeps
+///   below_tolerance   until max |delta k| < 1e-6, absolute
+template <Stop stop, int limit>
+struct UnconvergedGauss2 {
+  template <Problem P>
+  auto bind(P const& p, FixedStep control, NormPolicy policy) const {
+    return Fixed<UnconvergedGauss2, P>(*this, p, control, policy);
+  }
+  template <Space M>
+  struct Memory {
+    std::int64_t iterations = 0;
+    void restart() {}
+  };
+  template <Space M>
+  struct Frame {};
+
+  template <Problem P, class M = typename P::Space, class S = typename M::Scalar, class R = Real<S>>
+  POLHODE_INLINE void step(P const& p, S const& t, R const& h, Point<M>& x, Frame<M>&, Memory<M>& memory) const {
+    R const root = sqrt(R(3.0)) / R(6.0);
+    R const near = R(0.25) * h, low = (R(0.25) - root) * h, high = (R(0.25) + root) * h;
+    Chart<M> k1 = M::rate(x, p(t, x)), k2 = k1;
+    auto const slope = [&](R const& c, R const& a1, R const& a2) POLHODE_LAMBDA {
+      Chart<M> u = M::centre(x);
+      add(u, a1, k1);
+      add(u, a2, k2);
+      return M::chart_rate(x, u, p(S(t + c * h), M::retract(x, u)));
+    };
+    int const most = stop == Stop::after_sweeps ? limit : 100;
+    for (int sweep = 0; sweep < most; ++sweep) {
+      Chart<M> const new1 = slope(R(0.5) - root, near, low), new2 = slope(R(0.5) + root, high, near);
+      S const change = max_of(distance<S>(new1, k1), distance<S>(new2, k2));
+      k1 = new1;
+      k2 = new2;
+      ++memory.iterations;
+      if (stop == Stop::below_tolerance && change < S(1e-6)) break;
+    }
+    Chart<M> u = M::centre(x);
+    add(u, R(R(0.5) * h), k1);
+    add(u, R(R(0.5) * h), k2);
+    x = M::retract(x, u);
+  }
+};
+
+constexpr MethodInfo foil_info(std::string_view name, std::string_view pitfall) {
+  return {.name = name,
+          .family = Family::gauss,
+          .source = "a foil: Hairer, Lubich & Wanner, II.1.3, left unconverged",
+          .pitfall = pitfall};
+}
+struct Gauss2Sweeps1 : UnconvergedGauss2<Stop::after_sweeps, 1> {
+  static constexpr MethodInfo info = foil_info("gauss2_sweeps1", "one sweep: nothing is conserved");
+};
+struct Gauss2Sweeps2 : UnconvergedGauss2<Stop::after_sweeps, 2> {
+  static constexpr MethodInfo info = foil_info("gauss2_sweeps2", "two sweeps: nothing is conserved");
+};
+struct Gauss2Tol6 : UnconvergedGauss2<Stop::below_tolerance, 0> {
+  static constexpr MethodInfo info = foil_info("gauss2_tol6", "stopped at 1e-6: linear drift in every invariant");
+};
+
+}  // namespace polhode

@@ -1,0 +1,168 @@
+#pragma once
+/// What a method is to the rest of the project, and the two drivers that turn a step into a stepper.
+///
+/// An integrator is a type with the facts `info` and `bind(problem, control, policy)`, which returns a stepper:
+///   advance(x, t, t_end) -> Status   moves the state from t to t_end [s]; allocates nothing
+///   restart()                        the field has jumped or x was changed from outside: forget history
+///   work()                           counts since bind
+/// Methods that choose their own steps also have step(x, t, t_end): one accepted step, t moves.
+#include <cmath>
+#include <cstdint>
+#include <string_view>
+
+#include "integrators/norm_policy.hpp"
+#include "problems/problem.hpp"
+
+namespace polhode {
+
+/// How an advance ended.
+enum class Status { ok, diverged, step_underflow, max_steps, nonlinear_fail };
+
+/// Equal steps of h seconds; the last one before t_end is shortened if h does not divide.
+struct FixedStep {
+  double h;
+};
+/// Steps chosen by the method so that the local error stays below atol + rtol |y|, by component.
+struct Adaptive {
+  double rtol, atol;
+};
+
+/// Deterministic counts: equal on every machine.
+struct Work {
+  std::int64_t steps = 0;  ///< accepted
+  std::int64_t rejected = 0;
+  std::int64_t iterations = 0;  ///< sweeps of a fixed point, or nonlinear iterations
+  std::int64_t jacobians = 0;
+};
+
+enum class Family { explicit_rk, gauss, lie_group, rigid_body, splitting, exact, taylor, library };
+
+/// What a method asks of a problem or its space. Refusals are rows, with this as their reason.
+enum class Needs { none, flat, group, free_body };
+
+/// What a method keeps to round-off or boundedly; a claim that the tests measure. Combine with |.
+enum Preserves : unsigned {
+  keeps_nothing = 0,
+  keeps_norm = 1,
+  keeps_energy = 2,
+  keeps_momentum = 4,            ///< the length of the angular momentum
+  keeps_momentum_direction = 8,  ///< its direction in space
+  is_symplectic = 16,
+  is_symmetric = 32
+};
+
+/// The facts of a method. `order` is that of fixed steps, 0 if there is none.
+struct MethodInfo {
+  std::string_view name;
+  Family family;
+  int order = 0;
+  Needs needs = Needs::none;
+  unsigned preserves = keeps_nothing;
+  bool rival = false;
+  std::string_view source;
+  std::string_view pitfall = "";
+  std::string_view not_built = "";  ///< why this binary refuses it
+};
+
+template <class T, class P>
+concept StepperFor = requires(T s, T const c, Point<typename P::Space> x, Real<typename P::Space::Scalar> t) {
+  { s.advance(x, t, t) } -> std::same_as<Status>;
+  { c.work() } -> std::same_as<Work>;
+  { c.projections() } -> std::same_as<Projections>;
+  s.restart();
+};
+template <class I, class P>
+concept RunsFixed = Problem<P> && requires(I method, P const& p) {
+  { method.bind(p, FixedStep{}, NormPolicy::none) } -> StepperFor<P>;
+};
+template <class I, class P>
+concept RunsAdaptive = Problem<P> && requires(I method, P const& p) {
+  { method.bind(p, Adaptive{}, NormPolicy::none) } -> StepperFor<P>;
+};
+template <class I, class P>
+concept IntegratorFor = RunsFixed<I, P> || RunsAdaptive<I, P>;
+
+/// Why a method cannot run on a space; empty if it can.
+template <class M>
+constexpr std::string_view refusal(Needs needs) {
+  if (needs == Needs::flat && !M::flat) return "needs flat coordinates";
+  if (needs == Needs::group && M::flat) return "needs a rotation group (formulation s3 or so3)";
+  return "";
+}
+
+/// For methods that remember nothing from step to step.
+struct NoMemory {
+  void restart() {}
+};
+
+/// Equal steps. A method supplies, for each space M:
+///   Frame<M>                   the storage of one step: locals, so that a small state stays in registers
+///   Memory<M>                  what survives from step to step, with restart(); NoMemory for most
+///   step(p, t, h, x, frame, memory)
+template <class Method, Problem P>
+class Fixed {
+  using M = typename P::Space;
+  using S = typename M::Scalar;
+  using R = Real<S>;
+
+ public:
+  Fixed(Method method, P const& problem, FixedStep control, NormPolicy policy)
+      : method_(std::move(method)), problem_(&problem), h_(control.h), policy_(policy) {}
+
+  /// Fails with Status::diverged if the state is no longer finite at t_end.
+  Status advance(Point<M>& x, R t, R t_end) {
+    auto const whole = std::int64_t(std::floor(double((t_end - t) / h_) + 1e-9));
+    R const rest = t_end - t - R(double(whole)) * h_;
+    bool const divides = double(rest / h_) < 1e-9;
+    run(x, t, divides ? equal_step(t_end - t, whole) : h_, whole);
+    if (!divides) run(x, t + R(double(whole)) * h_, rest, 1);
+    return all_finite(x) ? Status::ok : Status::diverged;
+  }
+  void restart() { memory_.restart(); }
+  Work work() const {
+    Work work;
+    work.steps = steps_;
+    if constexpr (requires { memory_.iterations; }) work.iterations = memory_.iterations;
+    return work;
+  }
+  Projections projections() const { return projections_; }
+
+ private:
+  /// In double h itself, so that one long advance and many short ones take the same steps to the last bit. A longer
+  /// float gets the exact quotient: there a step given as a double is not exact.
+  R equal_step(R const& span, std::int64_t n) const {
+    if constexpr (std::same_as<R, double>)
+      return h_;
+    else
+      return n > 0 ? span / R(double(n)) : h_;
+  }
+  POLHODE_INLINE void loop(Point<M>& x, R t, R h, std::int64_t n) {
+    typename Method::template Frame<M> frame;
+    Point<M> y = x;  // nobody points at y: it lives in registers
+    auto memory = memory_;
+    for (std::int64_t i = 0; i < n; ++i) {
+      method_.step(*problem_, S(t + R(double(i)) * h), h, y, frame, memory);
+      if (policy_ == NormPolicy::project) projections_.template apply<M>(y);
+    }
+    x = y;
+    memory_ = memory;
+    steps_ += n;
+  }
+  [[gnu::flatten]] void run_flattened(Point<M>& x, R t, R h, std::int64_t n) { loop(x, t, h, n); }
+  void run(Point<M>& x, R t, R h, std::int64_t n) {
+    if constexpr (ScalarTraits<S>::flattened)
+      run_flattened(x, t, h, n);
+    else
+      loop(x, t, h, n);  // long floats and series: inlining everything costs compile time and gains nothing
+  }
+
+  Method method_;
+  P const* problem_;
+  R h_;
+  NormPolicy policy_;
+  typename Method::template Memory<M> memory_{};
+  Projections projections_;
+  std::int64_t steps_ = 0;
+};
+
+}  // namespace polhode

@@ -1,0 +1,176 @@
+#pragma once
+/// SUNDIALS CVODE behind our face, unmodified. Memory is made in bind and lives across advance calls; restart()
+/// re-initialises at the next call. double, flat coordinates; rtol, atol per component.
+/// Adams runs with fixed-point iteration, BDF with Newton and a dense difference-quotient Jacobian: CVODE's guide,
+/// ch. 4. Source: Hindmarsh et al. (2005), ACM TOMS 31, 363; SUNDIALS 6.4
+#include "integrators/integrator.hpp"
+
+#ifdef POLHODE_HAS_SUNDIALS
+#include <cvode/cvode.h>
+#include <nvector/nvector_serial.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
+#include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
+
+#include <memory>
+#include <new>
+#endif
+
+namespace polhode {
+
+#ifdef POLHODE_HAS_SUNDIALS
+inline constexpr std::string_view sundials_not_built = "";
+
+/// Everything that does not know the problem: CVODE's objects and their lifetimes.
+class CvodeMemory {
+ public:
+  /// multistep is CV_ADAMS or CV_BDF. Throws std::bad_alloc if the library cannot make its memory.
+  CvodeMemory(int multistep, Adaptive control, CVRhsFn field, void* user, int size) {
+    y_.reset(N_VNew_Serial(size, context_.get()));
+    memory_.reset(CVodeCreate(multistep, context_.get()));
+    if (!y_ || !memory_) throw std::bad_alloc();
+    N_VConst(0, y_.get());
+    bool good = CVodeInit(memory_.get(), field, 0, y_.get()) == CV_SUCCESS &&
+                CVodeSStolerances(memory_.get(), control.rtol, control.atol) == CV_SUCCESS &&
+                CVodeSetUserData(memory_.get(), user) == CV_SUCCESS &&
+                CVodeSetMaxNumSteps(memory_.get(), most_steps) == CV_SUCCESS;
+    if (multistep == CV_ADAMS) {
+      fixed_point_.reset(SUNNonlinSol_FixedPoint(y_.get(), 0, context_.get()));
+      good = good && CVodeSetNonlinearSolver(memory_.get(), fixed_point_.get()) == CV_SUCCESS;
+    } else {
+      matrix_.reset(SUNDenseMatrix(size, size, context_.get()));
+      linear_.reset(SUNLinSol_Dense(y_.get(), matrix_.get(), context_.get()));
+      good = good && CVodeSetLinearSolver(memory_.get(), linear_.get(), matrix_.get()) == CV_SUCCESS;
+    }
+    if (!good) throw std::bad_alloc();
+  }
+
+  double* state() { return N_VGetArrayPointer(y_.get()); }
+  void restart() { fresh_ = true; }
+
+  /// Goes on to t_end, or by one step of CVODE's choice; t moves.
+  Status advance(double& t, double t_end, int task) {
+    if (std::exchange(fresh_, false)) {
+      collect();
+      CVodeReInit(memory_.get(), t, y_.get());
+    }
+    CVodeSetStopTime(memory_.get(), t_end);
+    switch (CVode(memory_.get(), t_end, y_.get(), &t, task)) {
+      case CV_SUCCESS:
+      case CV_TSTOP_RETURN:
+        return Status::ok;
+      case CV_TOO_MUCH_WORK:
+        return Status::max_steps;
+      case CV_CONV_FAILURE:
+        return Status::nonlinear_fail;
+      case CV_ERR_FAILURE:
+      case CV_TOO_MUCH_ACC:
+        return Status::step_underflow;
+      default:
+        return Status::diverged;
+    }
+  }
+  /// CVODE's counters start anew at each re-initialisation; we keep the sum.
+  Work work() const {
+    Work sum = before_;
+    add_counters(sum);
+    return sum;
+  }
+
+ private:
+  static constexpr long most_steps = 10'000'000;
+
+  void collect() { add_counters(before_); }
+  void add_counters(Work& sum) const {
+    long steps = 0, failures = 0, iterations = 0, jacobians = 0;
+    CVodeGetNumSteps(memory_.get(), &steps);
+    CVodeGetNumErrTestFails(memory_.get(), &failures);
+    CVodeGetNumNonlinSolvIters(memory_.get(), &iterations);
+    if (linear_) CVodeGetNumJacEvals(memory_.get(), &jacobians);
+    sum.steps += steps;
+    sum.rejected += failures;
+    sum.iterations += iterations;
+    sum.jacobians += jacobians;
+  }
+
+  struct Free {
+    void operator()(SUNContext context) const { SUNContext_Free(&context); }
+    void operator()(N_Vector v) const { N_VDestroy(v); }
+    void operator()(SUNMatrix m) const { SUNMatDestroy(m); }
+    void operator()(SUNLinearSolver s) const { SUNLinSolFree(s); }
+    void operator()(SUNNonlinearSolver s) const { SUNNonlinSolFree(s); }
+    void operator()(void* memory) const { CVodeFree(&memory); }
+  };
+  template <class Pointer>
+  using Owned = std::unique_ptr<std::remove_pointer_t<Pointer>, Free>;
+  static SUNContext make_context() {
+    SUNContext context = nullptr;
+    if (SUNContext_Create(nullptr, &context) != 0) throw std::bad_alloc();
+    return context;
+  }
+
+  Owned<SUNContext> context_{make_context()};  // outlives all that is made in it
+  Owned<N_Vector> y_;
+  Owned<SUNMatrix> matrix_;
+  Owned<SUNLinearSolver> linear_;
+  Owned<SUNNonlinearSolver> fixed_point_;
+  std::unique_ptr<void, Free> memory_;
+  bool fresh_ = true;
+  Work before_;
+};
+
+template <Problem P>
+class CvodeStepper {
+  using M = typename P::Space;
+
+ public:
+  CvodeStepper(int multistep, P const& problem, Adaptive control)
+      : memory_(multistep, control, field, const_cast<P*>(&problem), Chart<M>::size) {}
+
+  /// x is read at a restart; between restarts CVODE's own state and history go on.
+  Status advance(Point<M>& x, double t, double t_end) { return go(x, t, t_end, CV_NORMAL); }
+  Status step(Point<M>& x, double& t, double t_end) { return go(x, t, t_end, CV_ONE_STEP); }
+  void restart() { memory_.restart(); }
+  Work work() const { return memory_.work(); }
+  Projections projections() const { return {}; }
+
+ private:
+  Status go(Point<M>& x, double& t, double t_end, int task) {
+    store(x, memory_.state());
+    Status const status = memory_.advance(t, t_end, task);
+    load(x, memory_.state());
+    return status == Status::ok && !all_finite(x) ? Status::diverged : status;
+  }
+  static int field(double t, N_Vector y, N_Vector dydt, void* problem) {
+    Point<M> x;
+    load(x, N_VGetArrayPointer(y));
+    store(M::rate(x, (*static_cast<P const*>(problem))(t, x)), N_VGetArrayPointer(dydt));
+    return 0;
+  }
+  CvodeMemory memory_;
+};
+#else
+inline constexpr std::string_view sundials_not_built = "not built: configure with POLHODE_SUNDIALS=ON";
+#endif
+
+/// The two multistep families differ in one number.
+template <bool stiff>
+struct Cvode {
+  static constexpr MethodInfo info{.name = stiff ? "cvode_bdf" : "cvode_adams",
+                                   .family = Family::library,
+                                   .needs = Needs::flat,
+                                   .rival = true,
+                                   .source = "SUNDIALS 6.4 CVODE; Hindmarsh et al. (2005)",
+                                   .pitfall = "a multistep history is lost at every sample: each restarts at order 1",
+                                   .not_built = sundials_not_built};
+#ifdef POLHODE_HAS_SUNDIALS
+  /// Refuses projection: between CVODE's steps it would break the history that its next step extrapolates.
+  template <Problem P>
+    requires FlatSpace<typename P::Space> && std::same_as<typename P::Space::Scalar, double>
+  auto bind(P const& p, Adaptive control, NormPolicy) const {
+    return CvodeStepper<P>(stiff ? CV_BDF : CV_ADAMS, p, control);
+  }
+#endif
+};
+
+}  // namespace polhode

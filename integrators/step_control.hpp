@@ -1,0 +1,129 @@
+#pragma once
+/// Adaptive steps by proportional-integral control of the local error.
+/// Source: Hairer, Norsett & Wanner, Solving ODEs I, II.4 (starting step, norm, code DOPRI5's constants);
+///         Gustafsson (1991), ACM TOMS 17, 533.
+#include <algorithm>
+
+#include "integrators/integrator.hpp"
+
+namespace polhode {
+
+/// Drives a pair (see EmbeddedPair) with error control per component: |e_i| <= atol + rtol max(|y_i|, |y_new,i|), RMS.
+/// fails   Status::step_underflow if the step falls below 10 ulp of t, Status::max_steps after `most` trial steps in
+/// one
+///         advance, Status::diverged if the state is not finite
+template <class Pair, Problem P>
+class Controlled {
+  using M = typename P::Space;
+  using S = typename M::Scalar;
+  using R = Real<S>;
+
+ public:
+  Controlled(Pair pair, P const& problem, Adaptive control, NormPolicy policy)
+      : pair_(std::move(pair)), problem_(&problem), control_(control), policy_(policy) {}
+
+  Status advance(Point<M>& x, R t, R t_end) {
+    for (std::int64_t trials = work_.steps + work_.rejected; t < t_end;) {
+      if (Status const status = step(x, t, t_end); status != Status::ok) return status;
+      if (work_.steps + work_.rejected - trials > most) return Status::max_steps;
+    }
+    return Status::ok;
+  }
+  /// One accepted step, not beyond t_end; t moves.
+  Status step(Point<M>& x, R& t, R t_end) {
+    if (!fresh_slope_) slope_ = M::rate(x, (*problem_)(S(t), x));
+    fresh_slope_ = true;
+    if (!(R(0.0) < h_)) h_ = starting_step(x, t, t_end - t);
+    bool rejected_before = false;
+    for (std::int64_t trial = 0; trial < most; ++trial) {
+      R const left = t_end - t;
+      bool const last = h_ * R(1.0 + 1e-10) >= left;
+      R const h = last ? left : h_;
+      if (double(h) <= 10 * std::numeric_limits<double>::epsilon() * std::fabs(double(t)) && !last)
+        return Status::step_underflow;
+      Point<M> y;
+      Chart<M> new_slope, error;
+      pair_.attempt(*problem_, t, h, x, slope_, frame_, y, new_slope, error);
+      double const size = norm(error, x, y);
+      if (!std::isfinite(size)) {
+        if (++work_.rejected; !all_finite(x)) return Status::diverged;
+        h_ = h * R(0.1);
+        rejected_before = true;
+        continue;
+      }
+      double const exponent = 1.0 / pair_.order;
+      // 0.75 of the plain exponent, and the last error's memory: the PI constants of DOPRI5 (beta = 0.04).
+      double const factor = std::pow(size, exponent - 0.03) / std::pow(last_size_, 0.04);
+      if (size <= 1) {
+        double const growth = std::clamp(0.9 / std::max(factor, 1e-10), 0.2, 10.0);
+        // A step cut short by t_end says little about the next one.
+        if (!last || h == h_ || growth < 1) h_ = h * R(rejected_before ? std::min(growth, 1.0) : growth);
+        last_size_ = std::max(size, 1e-4);
+        x = y;
+        slope_ = new_slope;
+        t = last ? t_end : R(t + h);
+        ++work_.steps;
+        if (policy_ == NormPolicy::project) {
+          projections_.template apply<M>(x);
+          fresh_slope_ = false;
+        }
+        return Status::ok;
+      }
+      ++work_.rejected;
+      rejected_before = true;
+      h_ = h * R(std::max(0.2, 0.9 / std::pow(size, exponent - 0.03)));
+    }
+    return Status::max_steps;
+  }
+  /// The slope and the error's memory are forgotten, the step size is kept: the field jumped, the time scale hardly
+  /// did.
+  void restart() {
+    fresh_slope_ = false;
+    last_size_ = 1e-4;
+  }
+  Work work() const { return work_; }
+  Projections projections() const { return projections_; }
+
+ private:
+  static constexpr std::int64_t most = 10'000'000;
+
+  double norm(Chart<M> const& error, Point<M> const& x, Point<M> const& y) const {
+    double sum = 0;
+    Chart<M>::each(
+        [&](S const& e, S const& a, S const& b) {
+          double const scale = control_.atol + control_.rtol * std::max(std::fabs(double(a)), std::fabs(double(b)));
+          double const part = double(e) / scale;
+          sum += part * part;
+        },
+        error, x, y);
+    return std::sqrt(sum / Chart<M>::size);
+  }
+  /// Hairer, Norsett & Wanner I, II.4, "starting step size".
+  R starting_step(Point<M> const& x, R const& t, R const& longest) {
+    double const size = norm(x, x, x), speed = norm(slope_, x, x);
+    double h = size < 1e-5 || speed < 1e-5 ? 1e-6 : 0.01 * size / speed;
+    h = std::min(h, double(longest));
+    Point<M> y = x;
+    add(y, R(h), slope_);
+    Chart<M> change = M::rate(y, (*problem_)(S(t + R(h)), y));
+    add(change, R(-1.0), slope_);
+    double const curvature = norm(change, x, x) / h;
+    double const greatest = std::max(speed, curvature);
+    double const h1 = greatest <= 1e-15 ? std::max(1e-6, h * 1e-3) : std::pow(0.01 / greatest, 1.0 / pair_.order);
+    return R(std::min({100 * h, h1, double(longest)}));
+  }
+
+  Pair pair_;
+  P const* problem_;
+  Adaptive control_;
+  NormPolicy policy_;
+  typename Pair::template Frame<M> frame_;
+  Chart<M> slope_;
+  bool fresh_slope_ = false;
+  R h_ = R(0.0);
+  double last_size_ = 1e-4;
+  Work work_;
+  Projections projections_;
+};
+
+}  // namespace polhode
