@@ -1,0 +1,121 @@
+#include <fmt/format.h>
+
+#include <map>
+#include <set>
+
+#include "report/sections.hpp"
+#include "report/text.hpp"
+
+namespace polhode::report {
+
+using results::Record;
+
+void add_failures(Document& document, Facts const& facts) {
+  document.heading(2, "7. Failures and refusals");
+  // status, reason, problem, method -> step sizes and tolerances
+  std::map<std::tuple<std::string, std::string, std::string, std::string>, std::vector<std::string>> groups;
+  std::size_t n = 0;
+  for (Instance const& instance : facts.instances) {
+    for (Record const* run : instance.runs) {
+      if (is_ok(*run)) continue;
+      ++n;
+      std::string const reason = run->reason.empty() ? "no reason recorded" : run->reason;
+      groups[{std::string(name_of(run->status)), reason, instance.label, method_of(run->of)}].push_back(
+          control_of(run->of));
+    }
+  }
+  Table table{
+      .name = "failures",
+      .caption = fmt::format("{} that did not end well, by status and reason. A failure counts as infinite in every "
+                             "ranking above.",
+                             counted(n, "run", "runs")),
+      .columns = {{"status"}, {"reason"}, {"problem"}, {"method"}, {"runs", true}, {"control"}},
+      .rows = {}};
+  for (auto const& [key, controls] : groups) {
+    auto const& [status, reason, problem, method] = key;
+    table.rows.push_back({status, reason, problem, method, std::to_string(controls.size()),
+                          fmt::format("{}", fmt::join(controls, "; "))});
+  }
+  if (n > 0) {
+    document.add(std::move(table));
+  } else {
+    document.say(facts.runs.empty() ? "There are no runs, hence no failures." : "Every run ended with status ok.");
+  }
+  auto const& unfinished = facts.contents.unfinished;
+  if (!unfinished.empty()) {
+    document.say(fmt::format("{} begun and never finished, which means that the process died or is still at work: {}.",
+                             unfinished.size() == 1 ? "1 cell was" : std::to_string(unfinished.size()) + " cells were",
+                             listed(unfinished)));
+  }
+}
+
+void add_references(Document& document, Facts const& facts) {
+  document.heading(2, "8. References and provenance");
+  std::map<std::pair<std::string, std::optional<double>>, std::pair<std::set<std::string>, std::size_t>> uses;
+  std::size_t without = 0;
+  for (Instance const& instance : facts.instances) {
+    for (Record const* run : instance.runs) {
+      if (run->reference.empty()) {
+        ++without;
+        continue;
+      }
+      auto& [problems, count] = uses[{run->reference, finite(run->reference_bar)}];
+      problems.insert(instance.label);
+      ++count;
+    }
+  }
+  Table table{.name = "references",
+              .caption =
+                  "What attitude errors were measured against. The bar bounds the reference's own error; a smaller "
+                  "measured error says no more than that.",
+              .columns = {{"reference"}, {"problem"}, {"bar [rad]", true}, {"[arcsec]", true}, {"runs", true}},
+              .rows = {}};
+  for (auto const& [key, use] : uses) {
+    auto const& [name, bar] = key;
+    std::vector<std::string> const problems(use.first.begin(), use.first.end());
+    table.rows.push_back({name, fmt::format("{}", fmt::join(problems, "; ")), number(bar),
+                          bar ? number(arcseconds(*bar)) : Entry(absent), std::to_string(use.second)});
+  }
+  if (table.rows.empty()) {
+    document.say("No run here has a reference, so no error is certified.");
+  } else {
+    document.add(std::move(table));
+    if (without > 0)
+      document.say(
+          fmt::format("{} no reference.", without == 1 ? "1 run has" : std::to_string(without) + " runs have"));
+  }
+}
+
+void add_provenance(Document& document, Facts const& facts) {
+  document.heading(3, "Provenance");
+  std::map<std::string, std::size_t> builds;
+  for (Record const* run : facts.runs) ++builds[run->build];
+  std::vector<std::string> words;
+  for (auto const& [build, n] : builds)
+    words.push_back(fmt::format("{} ({})", build.empty() ? "unnamed" : build, counted(n, "run", "runs")));
+  auto const files = facts.contents.metas.size();
+  document.say(fmt::format(
+      "{} in {}{}.", counted(facts.runs.size(), "run", "runs"), counted(files, "file", "files"),
+      words.empty() ? "" : ", made by " + std::string(words.size() == 1 ? "build " : "builds ") + listed(words)));
+  if (facts.superseded > 0) {
+    document.say(
+        fmt::format("{} replaced by a later run of the same cell.",
+                    facts.superseded == 1 ? "1 record was" : std::to_string(facts.superseded) + " records were"));
+  }
+  std::map<std::pair<std::string, std::string>, std::size_t> values;
+  for (results::Meta const& meta : facts.contents.metas) {
+    for (auto const& [key, value] : meta) ++values[{key, value}];
+  }
+  Table table{.name = "provenance",
+              .caption = "Where and how the records were made.",
+              .columns = {{"what"}, {"value"}, {"files", true}},
+              .rows = {}};
+  for (auto const& [item, n] : values) table.rows.push_back({item.first, item.second, std::to_string(n)});
+  if (table.rows.empty()) {
+    document.say("The records say nothing about where and how they were made.");
+  } else {
+    document.add(std::move(table));
+  }
+}
+
+}  // namespace polhode::report

@@ -1,0 +1,218 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "report/sections.hpp"
+#include "report/text.hpp"
+
+namespace polhode::report {
+namespace {
+
+using results::Record;
+using results::Series;
+
+/// More samples than this per curve only make the file larger.
+constexpr std::size_t most_samples = 1200;
+/// Length of the arm from the centre of mass to the capture point, d = (-2, 0, 0) m in body axes.
+constexpr double arm = 2;
+
+/// "tether_capture case1,g1, 50 s" without its case.
+std::string label_without(std::string label, std::string_view word) {
+  auto const at = label.find(word);
+  if (at == std::string::npos) return label;
+  std::size_t length = word.size();
+  if (label.substr(at + length).starts_with(',')) ++length;
+  return label.erase(at, length);
+}
+
+bool is_better(Facts const& facts, Record const& a, Record const& b) {
+  auto const merit = [&](Record const& run) {
+    double const error = finite(run.attitude_error_max).value_or(INFINITY);
+    return std::pair(facts.series_of(run, "history") == nullptr, error);
+  };
+  return merit(a) < merit(b);
+}
+
+/// One curve: `y` of a row against `x` of a row. Rows with a missing number are left out.
+template <class X, class Y>
+Curve curve_of(std::string label, Style const& style, Series const& series, X x, Y y) {
+  Curve curve{std::move(label), style, {}};
+  std::size_t const stride = series.rows.size() / most_samples + 1;
+  for (std::size_t i = 0; i < series.rows.size(); i += stride) {
+    auto const& row = series.rows[i];
+    if (row.size() != series.columns.size()) continue;
+    Point const p{x(row), y(row)};
+    if (std::isfinite(p.x) && std::isfinite(p.y)) curve.points.push_back(p);
+  }
+  return curve;
+}
+
+using Row = std::vector<double>;
+
+/// The histories of one gain set and sign, as pictures.
+class Histories {
+ public:
+  Histories(Facts const& facts, CaseRuns const& cases, std::size_t n) : n_(n) {
+    int index = 0;
+    for (auto const name : control_cases) {
+      auto const found = cases.of.find(std::string(name));
+      Series const* series = found == cases.of.end() ? nullptr : facts.series_of(*found->second, "history");
+      if (series) shown_.push_back({fmt::format("case {}", name.back()), index, series, found->second});
+      ++index;
+    }
+  }
+
+  bool empty() const { return shown_.empty(); }
+
+  std::string sources() const {
+    std::vector<std::string> words;
+    for (Shown const& s : shown_) {
+      words.push_back(fmt::format("{}: {}, {}", s.label, method_of(s.run->of), control_of(s.run->of)));
+    }
+    return fmt::format("{}", fmt::join(words, "; "));
+  }
+
+  /// A column against time, scaled to the unit of the label.
+  Panel against_time(std::string_view column, std::string label, double factor) const {
+    Panel panel{.x = {"t [s]"}, .y = {std::move(label)}, .curves = {}};
+    for (Shown const& s : shown_) {
+      auto const t = column_of(*s.series, "t"), value = column_of(*s.series, column);
+      if (!t || !value) continue;
+      Curve curve = curve_of(
+          s.label, style_of(s), *s.series, [&](Row const& row) { return row[*t]; },
+          [&](Row const& row) { return factor * row[*value]; });
+      if (!curve.points.empty()) panel.curves.push_back(std::move(curve));
+    }
+    return panel;
+  }
+
+  /// The capture point in orbital axes, C = A(q)^T d = R(q) d, seen along an axis.
+  Panel track(std::size_t across, std::size_t up) const {
+    static constexpr std::array names{"x", "y", "z"};
+    Panel panel{.x = {fmt::format("{} [m]", names[across])},
+                .y = {fmt::format("{} [m]", names[up])},
+                .curves = {},
+                .equal_scale = true};
+    for (Shown const& s : shown_) {
+      std::array<std::size_t, 4> q{};
+      bool complete = true;
+      for (std::size_t i = 0; i < 4; ++i) {
+        auto const at = column_of(*s.series, fmt::format("q{}", i + 1));
+        complete = complete && at;
+        q[i] = at.value_or(0);
+      }
+      if (!complete) continue;
+      auto const coordinate = [&](std::size_t axis) {
+        return
+            [&s, q, axis](Row const& row) { return capture_point(row[q[0]], row[q[1]], row[q[2]], row[q[3]])[axis]; };
+      };
+      Curve curve = curve_of(s.label, style_of(s), *s.series, coordinate(across), coordinate(up));
+      if (!curve.points.empty()) panel.curves.push_back(std::move(curve));
+    }
+    if (panel.curves.empty()) return panel;
+    std::array<double, 3> const target{-arm, 0, 0};
+    Point const start = panel.curves.front().points.front();
+    panel.curves.push_back({"start", {.index = 3, .line = false}, {start}});
+    panel.curves.push_back({"target", {.index = 6, .open = true, .line = false}, {{target[across], target[up]}}});
+    return panel;
+  }
+
+  void add(Document& document, std::string_view what, std::string const& caption, std::vector<Panel> panels,
+           int columns) const {
+    std::erase_if(panels, [](Panel const& panel) { return panel.curves.empty(); });
+    if (panels.empty()) {
+      document.say(fmt::format("The histories hold no column for a figure of the {}.", what));
+      return;
+    }
+    document.add(Figure{.name = fmt::format("control-{}-{}", n_, what),
+                        .caption = caption,
+                        .panels = std::move(panels),
+                        .columns = columns,
+                        .svg = {},
+                        .why_not = ""});
+  }
+
+ private:
+  struct Shown {
+    std::string label;
+    int index;
+    Series const* series;
+    Record const* run;
+  };
+
+  /// Each case has its own dash too: where two coincide both are seen.
+  static Style style_of(Shown const& s) {
+    static constexpr std::array dashes{Dash::solid, Dash::dashed, Dash::dotted};
+    return {.index = s.index, .dash = dashes[static_cast<std::size_t>(s.index)], .points = false};
+  }
+
+  /// First column of R(q) times -arm; q is scalar last and need not be exactly of length one.
+  static std::array<double, 3> capture_point(double x, double y, double z, double w) {
+    double const scale = -arm / (x * x + y * y + z * z + w * w);
+    return {scale * (x * x - y * y - z * z + w * w), scale * 2 * (x * y + z * w), scale * 2 * (x * z - y * w)};
+  }
+
+  std::size_t n_;
+  std::vector<Shown> shown_;
+};
+
+}  // namespace
+
+std::vector<CaseRuns> case_runs(Facts const& facts) {
+  std::map<std::string, CaseRuns> groups;
+  for (Instance const& instance : facts.instances) {
+    if (instance.like().problem != "tether_capture") continue;
+    for (auto const name : control_cases) {
+      if (!has_word(instance.like().variant, name)) continue;
+      std::string const label = label_without(instance.label, name);
+      CaseRuns& group = groups.try_emplace(label, CaseRuns{label, {}}).first->second;
+      for (Record const* run : instance.runs) {
+        if (!is_ok(*run)) continue;
+        auto const [at, is_new] = group.of.try_emplace(std::string(name), run);
+        if (!is_new && is_better(facts, *run, *at->second)) at->second = run;
+      }
+    }
+  }
+  std::vector<CaseRuns> list;
+  for (auto& [label, group] : groups) {
+    if (!group.of.empty()) list.push_back(std::move(group));
+  }
+  return list;
+}
+
+void add_control_cases(Document& document, Facts const& facts) {
+  document.heading(2, "4. The three control strategies");
+  document.say(
+      "The paper's figures 4 to 7: tether and thruster together (case 1), thruster below 5 deg and tether above "
+      "(case 2), thruster alone (case 3). Each curve is the most accurate run that left a history. The "
+      "paper prints no gains: g1 and g2 are reconstructions. Variant as_printed has the gyroscopic term with the "
+      "sign that the paper prints.");
+  std::size_t n = 0;
+  for (CaseRuns const& cases : case_runs(facts)) {
+    Histories const histories(facts, cases, n + 1);
+    if (histories.empty()) continue;
+    ++n;
+    document.heading(3, cases.label);
+    document.say(fmt::format("Runs shown: {}.", histories.sources()));
+    double const degree = degrees(1);
+    histories.add(document, "track",
+                  "Track of the capture point C in orbital axes, seen along z, y and x (the paper's figure 4).",
+                  {histories.track(0, 1), histories.track(0, 2), histories.track(1, 2)}, 2);
+    histories.add(document, "angle", "Angle alpha between arm and tether (figure 5).",
+                  {histories.against_time("alpha", "alpha [deg]", degree)}, 1);
+    histories.add(document, "rates", "Body rates (figure 6).",
+                  {histories.against_time("wx", "omega x [deg/s]", degree),
+                   histories.against_time("wy", "omega y [deg/s]", degree),
+                   histories.against_time("wz", "omega z [deg/s]", degree)},
+                  1);
+    histories.add(document, "energy", "Thruster effort E_c, the integral of M_u.M_u (figure 7).",
+                  {histories.against_time("energy_c", "E_c [N^2 m^2 s]", 1)}, 1);
+  }
+  if (n == 0)
+    document.say("The records hold no history of tether_capture's case1, case2 or case3, so there are no figures.");
+}
+
+}  // namespace polhode::report

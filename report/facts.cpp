@@ -1,0 +1,254 @@
+#include "report/facts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <tuple>
+
+#include "report/text.hpp"
+
+namespace polhode::report {
+namespace {
+
+using results::Cell;
+using results::Record;
+
+std::vector<std::string> words_of(std::string_view variant) {
+  std::vector<std::string> words;
+  std::size_t start = 0;
+  while (start <= variant.size() && !variant.empty()) {
+    std::size_t const end = std::min(variant.find(',', start), variant.size());
+    words.emplace_back(variant.substr(start, end - start));
+    start = end + 1;
+  }
+  return words;
+}
+
+/// The name of an initial value problem; with enough digits it is also its identity.
+std::string label_of(Cell const& c, int digits = 6) {
+  std::string label = c.problem;
+  if (!c.variant.empty()) label += " " + c.variant;
+  for (auto const& [name, values] : c.set) {
+    std::vector<std::string> numbers;
+    for (double const v : values) numbers.push_back(significant(v, digits));
+    label += fmt::format(", {} = ({})", name, fmt::join(numbers, " "));
+  }
+  if (c.t_end > 0) label += fmt::format(", {} s", significant(c.t_end, digits));
+  if (c.seed != 1) label += fmt::format(", seed {}", c.seed);
+  return label;
+}
+
+/// Large steps and loose tolerances first; what has neither comes last.
+double coarseness(Cell const& c) {
+  return finite(c.h).value_or(finite(c.rtol).value_or(0));
+}
+
+struct Price {
+  double value, low, high;
+};
+
+std::optional<Price> price_of(Record const& run, Measure measure) {
+  if (measure == Measure::evaluations) {
+    if (!run.evaluations || *run.evaluations <= 0) return {};
+    auto const n = static_cast<double>(*run.evaluations);
+    return Price{n, n, n};
+  }
+  if (!run.cpu_time_s || !std::isfinite(run.cpu_time_s->median) || run.cpu_time_s->median <= 0) return {};
+  auto const& t = *run.cpu_time_s;
+  bool const interval = t.low > 0 && std::isfinite(t.high) && t.low <= t.median && t.median <= t.high;
+  return interval ? Price{t.median, t.low, t.high} : Price{t.median, t.median, t.median};
+}
+
+/// The price at the target itself: on the straight line, in logarithms, between the run and a coarser one of its sweep
+/// that misses the target. Absent if the two do not bracket it.
+std::optional<Price> between(Record const& run, Record const& coarser, double target, Measure measure) {
+  auto const fine = price_of(run, measure), coarse = price_of(coarser, measure);
+  if (!fine || !coarse || !is_ok(coarser) || below_bar(run) || below_bar(coarser)) return {};
+  double const e1 = finite(run.attitude_error_max).value_or(0), e0 = finite(coarser.attitude_error_max).value_or(0);
+  if (!(e1 > 0 && e0 > target && e1 <= target && coarse->value <= fine->value)) return {};
+  double const share = std::log(target / e1) / std::log(e0 / e1);
+  auto const mean = [&](double a, double b) { return std::exp((1 - share) * std::log(a) + share * std::log(b)); };
+  return Price{mean(fine->value, coarse->value), mean(fine->low, coarse->low), mean(fine->high, coarse->high)};
+}
+
+std::optional<Cost> cheapest(Sweep const& sweep, double target, Measure measure) {
+  std::optional<Cost> best;
+  for (std::size_t i = 0; i < sweep.runs.size(); ++i) {
+    Record const& run = *sweep.runs[i];
+    auto const price = price_of(run, measure);
+    if (!price || !reaches(run, target) || (best && best->measured <= price->value)) continue;
+    best = Cost{price->value, price->low, price->high, &run, price->value, false};
+    auto const exact_price = i > 0 ? between(run, *sweep.runs[i - 1], target, measure) : std::nullopt;
+    if (exact_price) {
+      best->value = exact_price->value;
+      best->low = exact_price->low;
+      best->high = exact_price->high;
+      best->interpolated = true;
+    }
+  }
+  return best;
+}
+
+/// Two-sided 95% quantile of Student's t.
+double student(std::size_t freedom) {
+  static constexpr double table[] = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228};
+  if (freedom <= std::size(table)) return table[freedom - 1];
+  auto const n = static_cast<double>(freedom);
+  return 1.96 + 2.4 / n + 3.0 / (n * n);  // within 0.005 from 10 on
+}
+
+}  // namespace
+
+bool is_rival(std::string_view integrator) {
+  constexpr std::string_view prefixes[] = {"odeint_", "cvode_", "arkode_", "gsl_"};
+  return integrator == "ida" || std::ranges::any_of(prefixes, [&](auto p) { return integrator.starts_with(p); });
+}
+
+bool has_word(std::string_view variant, std::string_view word) {
+  auto const words = words_of(variant);
+  return std::ranges::find(words, word) != words.end();
+}
+
+std::string without_word(std::string_view variant, std::string_view word) {
+  auto words = words_of(variant);
+  std::erase(words, word);
+  return fmt::format("{}", fmt::join(words, ","));
+}
+
+std::optional<double> finite(std::optional<double> value) {
+  return value && std::isfinite(*value) ? value : std::nullopt;
+}
+
+bool is_ok(Record const& run) {
+  return run.status == results::Status::ok;
+}
+
+bool reaches(Record const& run, double target) {
+  auto const error = finite(run.attitude_error_max);
+  return is_ok(run) && error && *error <= target && finite(run.reference_bar).value_or(0) <= target;
+}
+
+bool below_bar(Record const& run) {
+  auto const error = finite(run.attitude_error_max), bar = finite(run.reference_bar);
+  return error && bar && *error <= *bar;
+}
+
+std::string control_of(Cell const& cell) {
+  if (cell.h) return fmt::format("h = {} s", significant(*cell.h, 4));
+  if (!cell.rtol) return "no step or tolerance";
+  std::string text = fmt::format("rtol = {}", significant(*cell.rtol, 4));
+  if (cell.atol) text += fmt::format(", atol = {}", significant(*cell.atol, 4));
+  return text;
+}
+
+std::string method_of(Cell const& cell) {
+  std::string text = fmt::format("{} ({}", cell.integrator, cell.formulation);
+  if (cell.policy != "none") text += ", " + cell.policy;
+  return text + ")";
+}
+
+std::vector<Sweep> Instance::sweeps() const {
+  std::map<std::tuple<bool, std::string, std::string, std::string, bool>, Sweep> sweeps;
+  for (Record const* run : runs) {
+    Cell const& c = run->of;
+    sweeps[{is_rival(c.integrator), c.integrator, c.formulation, c.policy, c.h.has_value()}].runs.push_back(run);
+  }
+  std::vector<Sweep> sorted;
+  for (auto& [key, sweep] : sweeps) {
+    std::ranges::stable_sort(sweep.runs, std::greater{}, [](Record const* run) { return coarseness(run->of); });
+    sorted.push_back(std::move(sweep));
+  }
+  return sorted;
+}
+
+std::vector<Cost> ranking(Instance const& instance, double target, Measure measure) {
+  std::map<std::string, Cost> best;
+  for (Sweep const& sweep : instance.sweeps()) {
+    auto const cost = cheapest(sweep, target, measure);
+    if (!cost) continue;
+    auto const [at, is_new] = best.try_emplace(sweep.like().integrator, *cost);
+    if (!is_new && cost->value < at->second.value) at->second = *cost;
+  }
+  std::vector<Cost> sorted;
+  for (auto const& [name, cost] : best) sorted.push_back(cost);
+  std::ranges::stable_sort(sorted, {}, &Cost::value);
+  return sorted;
+}
+
+Measure measure_of(Instance const& instance) {
+  bool const timed = std::ranges::any_of(
+      instance.runs, [](Record const* run) { return is_ok(*run) && price_of(*run, Measure::time).has_value(); });
+  return timed ? Measure::time : Measure::evaluations;
+}
+
+std::optional<Order> fit_order(std::vector<std::pair<double, double>> const& points) {
+  auto const n = static_cast<double>(points.size());
+  double x_mean = 0, y_mean = 0;
+  for (auto const& [h, error] : points) {
+    x_mean += std::log(h) / n;
+    y_mean += std::log(error) / n;
+  }
+  double xx = 0, xy = 0, yy = 0;
+  for (auto const& [h, error] : points) {
+    double const x = std::log(h) - x_mean, y = std::log(error) - y_mean;
+    xx += x * x;
+    xy += x * y;
+    yy += y * y;
+  }
+  if (points.size() < 2 || !(xx > 1e-12)) return {};
+  Order order{xy / xx, {}, points.size()};
+  if (points.size() > 2) {
+    double const variance = std::max(0.0, yy - order.slope * xy) / (n - 2);
+    order.half_width = student(points.size() - 2) * std::sqrt(variance / xx);
+  }
+  return order;
+}
+
+Facts::Facts(results::Contents const& all) : contents(all) {
+  std::map<std::string, std::size_t> at;
+  for (Record const& run : all.records) {
+    auto const [place, is_new] = at.try_emplace(run.cell, runs.size());
+    if (is_new) {
+      runs.push_back(&run);
+    } else {
+      runs[place->second] = &run;
+      ++superseded;
+    }
+  }
+  std::map<std::string, std::size_t> index;
+  std::set<std::pair<bool, std::string>> integrators;
+  for (Record const* run : runs) {
+    auto const [place, is_new] = index.try_emplace(label_of(run->of, 17), instances.size());
+    if (is_new) instances.push_back({label_of(run->of), {}});
+    instances[place->second].runs.push_back(run);
+    integrators.emplace(is_rival(run->of.integrator), run->of.integrator);
+  }
+  std::ranges::stable_sort(instances, {}, &Instance::label);
+  for (auto const& [rival, name] : integrators) styles_.emplace(name, static_cast<int>(styles_.size()));
+  for (results::Series const& series : all.series) series_[{series.cell, series.name}] = &series;
+}
+
+results::Series const* Facts::series_of(Record const& run, std::string_view name) const {
+  auto const found = series_.find({run.cell, std::string(name)});
+  return found == series_.end() ? nullptr : found->second;
+}
+
+Style Facts::style_of(Cell const& cell) const {
+  auto const found = styles_.find(cell.integrator);
+  bool const rival = is_rival(cell.integrator), policy = cell.policy != "none";
+  return {.index = found == styles_.end() ? 0 : found->second,
+          .dash = rival    ? (policy ? Dash::dash_dot : Dash::dashed)
+                  : policy ? Dash::dotted
+                           : Dash::solid,
+          .open = rival};
+}
+
+std::optional<std::size_t> column_of(results::Series const& series, std::string_view name) {
+  auto const at = std::ranges::find(series.columns, name);
+  if (at == series.columns.end()) return {};
+  return static_cast<std::size_t>(at - series.columns.begin());
+}
+
+}  // namespace polhode::report

@@ -1,0 +1,100 @@
+#pragma once
+/// The records, arranged for questions: which runs belong together, what a run is called, what reaches an accuracy at
+/// which cost. Nothing here writes text for a reader except names.
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "report/document.hpp"
+#include "results/store.hpp"
+
+namespace polhode::report {
+
+/// True for the integrators of other libraries.
+bool is_rival(std::string_view integrator);
+/// True if the canonical variant ("case1,g1") holds that word.
+bool has_word(std::string_view variant, std::string_view word);
+/// The variant without one of its words: "case1,g1" without "case1" is "g1".
+std::string without_word(std::string_view variant, std::string_view word);
+
+/// Finite values only: whatever else a record holds counts as absent.
+std::optional<double> finite(std::optional<double> value);
+bool is_ok(results::Record const& run);
+/// True if the error is known to be at most `target`: it is, and so is the reference's bar.
+bool reaches(results::Record const& run, double target);
+/// True if the error is no greater than what the reference can resolve.
+bool below_bar(results::Record const& run);
+
+/// "h = 0.1 s" or "rtol = 1e-06, atol = 1e-09".
+std::string control_of(results::Cell const& cell);
+/// "gauss2 (quaternion)", with the policy if there is one: "gauss2 (quaternion, project)".
+std::string method_of(results::Cell const& cell);
+
+/// Runs of one method under one kind of control, from the largest step or tolerance to the smallest.
+struct Sweep {
+  std::vector<results::Record const*> runs;
+
+  results::Cell const& like() const { return runs.front()->of; }
+};
+
+/// One initial value problem: runs that may be compared with each other.
+struct Instance {
+  std::string label;  ///< "tether_capture case1,g1, 50 s"
+  std::vector<results::Record const*> runs;
+
+  results::Cell const& like() const { return runs.front()->of; }
+  std::vector<Sweep> sweeps() const;  ///< own methods first
+};
+
+/// What cost is counted in.
+enum class Measure { time, evaluations };
+
+/// The cost of reaching an accuracy.
+struct Cost {
+  double value = 0, low = 0, high = 0;   ///< [s] with its interval, or evaluations
+  results::Record const* run = nullptr;  ///< the cheapest run that reaches it
+  double measured = 0;                   ///< the cost of that run
+  bool interpolated = false;             ///< `value` is at the target itself, between `run` and its neighbour
+};
+
+/// Cheapest way of each integrator to an attitude error of `target` [rad], cheapest first.
+std::vector<Cost> ranking(Instance const& instance, double target, Measure measure);
+/// Time if some run of the instance was timed, otherwise evaluations.
+Measure measure_of(Instance const& instance);
+
+/// A measured order: least squares of log(error) on log(h).
+struct Order {
+  double slope = 0;
+  std::optional<double> half_width;  ///< of the 95% interval; needs three points
+  std::size_t points = 0;
+};
+
+/// The fit through (h, error), all positive; absent with fewer than two different h.
+std::optional<Order> fit_order(std::vector<std::pair<double, double>> const& points);
+
+/// All records, one per cell.
+class Facts {
+ public:
+  explicit Facts(results::Contents const& contents);
+
+  results::Contents const& contents;
+  std::vector<results::Record const*> runs;  ///< of every status; a cell run by several builds counts once, the last
+  std::vector<Instance> instances;
+  std::size_t superseded = 0;  ///< records that a later build replaced
+
+  /// The series of that name that belongs to the run, or null.
+  results::Series const* series_of(results::Record const& run, std::string_view name) const;
+  /// How a method looks in every figure: colour and symbol by integrator; rivals open and dashed, a norm policy dotted.
+  Style style_of(results::Cell const& cell) const;
+
+ private:
+  std::map<std::pair<std::string, std::string>, results::Series const*> series_;
+  std::map<std::string, int> styles_;
+};
+
+/// Position of a column of a series, if it has it.
+std::optional<std::size_t> column_of(results::Series const& series, std::string_view name);
+
+}  // namespace polhode::report

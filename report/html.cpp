@@ -1,0 +1,167 @@
+#include <fmt/format.h>
+
+#include "report/render.hpp"
+#include "report/text.hpp"
+
+namespace polhode::report {
+namespace {
+
+constexpr char const* style = R"(
+:root { color-scheme: light dark; --page: #ffffff; --ink: #1d2125; --quiet: #5b6269; --rule: #d5d9dd; --row: #f4f6f7; }
+@media (prefers-color-scheme: dark) {
+  :root { --page: #16191c; --ink: #e4e7ea; --quiet: #a2a9b0; --rule: #3a4046; --row: #1f2327; }
+}
+body { margin: 0 auto; padding: 1rem; max-width: 62rem; background: var(--page); color: var(--ink);
+  font: 1rem/1.5 system-ui, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif; overflow-wrap: break-word; }
+h1, h2, h3 { line-height: 1.25; }
+h2 { margin-top: 2.5rem; border-top: 1px solid var(--rule); padding-top: 1rem; }
+nav ol { columns: 18rem; }
+a { color: inherit; }
+figure { margin: 1.5rem 0; }
+figcaption { color: var(--quiet); font-size: .9rem; margin: .4rem 0; }
+.wide { overflow-x: auto; }
+.wide svg { display: block; min-width: 40rem; max-width: 100%; height: auto; border-radius: 6px; }
+table { border-collapse: collapse; font-size: .9rem; font-variant-numeric: tabular-nums; }
+th, td { padding: .25rem .6rem; text-align: left; vertical-align: top; border-bottom: 1px solid var(--rule); }
+td { max-width: 28rem; }
+th { vertical-align: bottom; }
+tbody tr:nth-child(even) { background: var(--row); }
+.number { text-align: right; white-space: nowrap; }
+code { font: .9em ui-monospace, "SF Mono", Consolas, "DejaVu Sans Mono", monospace; }
+@media print { nav { display: none; } }
+)";
+
+template <class... F>
+struct Overload : F... {
+  using F::operator()...;
+};
+
+void replace_all(std::string& text, std::string_view from, std::string_view to) {
+  for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
+    text.replace(at, from.size(), to);
+  }
+}
+
+std::string render(Text const& text) {
+  std::string out;
+  for (Span const& span : text.spans) {
+    out += span.code ? fmt::format("<code>{}</code>", escape_html(span.text)) : escape_html(span.text);
+  }
+  return out;
+}
+
+std::string made_by(std::string_view file) {
+  return fmt::format("Data: <a href=\"{0}\">{0}</a>. Made by <code>polhode report DIR</code>.", file);
+}
+
+std::string render(Table const& table) {
+  std::string out = fmt::format(
+      "<figure id=\"{0}\">\n<figcaption><b>Table {0}.</b> {1}</figcaption>\n<div class=\"wide\"><table>\n<thead><tr>",
+      table.name, render(table.caption));
+  auto const attribute = [&](std::size_t column) {
+    return column < table.columns.size() && table.columns[column].number ? " class=\"number\"" : "";
+  };
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    out += fmt::format("<th scope=\"col\"{}>{}</th>", attribute(i), escape_html(table.columns[i].title));
+  }
+  out += "</tr></thead>\n<tbody>\n";
+  for (auto const& row : table.rows) {
+    out += "<tr>";
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      out += fmt::format("<td{}>{}</td>", attribute(i), escape_html(row[i].text));
+    }
+    out += "</tr>\n";
+  }
+  return out + fmt::format("</tbody></table></div>\n<figcaption>{}</figcaption>\n</figure>\n",
+                           made_by("tables/" + table.name + ".csv"));
+}
+
+/// The picture without its XML prologue, and with ids that stay unique when many pictures share a page.
+std::string inlined(Figure const& figure) {
+  auto const start = figure.svg->find("<svg");
+  if (start == std::string::npos) return "";
+  std::string svg = figure.svg->substr(start);
+  std::string const prefix = figure.name + "-";
+  for (char const quote : {'"', '\''}) {
+    replace_all(svg, fmt::format(" id={}", quote), fmt::format(" id={}{}", quote, prefix));
+    replace_all(svg, fmt::format("href={}#", quote), fmt::format("href={}#{}", quote, prefix));
+  }
+  replace_all(svg, "url(#", "url(#" + prefix);
+  return svg;
+}
+
+std::string render(Figure const& figure) {
+  std::string const caption = render(figure.caption);
+  std::string const data = made_by("figures/" + figure.name + ".csv");
+  if (!figure.svg) {
+    return fmt::format("<p id=\"{0}\"><b>Figure {0}.</b> {1} The picture was not drawn: {2}. {3}</p>\n", figure.name,
+                       caption, escape_html(figure.why_not), data);
+  }
+  return fmt::format(
+      "<figure id=\"{0}\">\n<div class=\"wide\">{1}</div>\n<figcaption><b>Figure {0}.</b> {2} "
+      "{3}</figcaption>\n</figure>\n",
+      figure.name, inlined(figure), caption, data);
+}
+
+std::string contents(Document const& document) {
+  std::string out = "<nav><ol>\n";
+  int n = 0;
+  for (Block const& block : document.blocks) {
+    auto const* heading = std::get_if<Heading>(&block);
+    if (heading != nullptr && heading->level == 2) {
+      out += fmt::format("<li><a href=\"#section-{}\">{}</a></li>\n", ++n, escape_html(heading->text));
+    }
+  }
+  return out + "</ol></nav>\n";
+}
+
+}  // namespace
+
+std::string escape_html(std::string_view raw) {
+  std::string out;
+  for (char const c : one_line(raw)) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      case '\'':
+        out += "&#39;";
+        break;
+      default:
+        out += c;
+    }
+  }
+  return out;
+}
+
+std::string to_html(Document const& document) {
+  std::string const title = escape_html(document.title);
+  std::string out = fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{0}</title>\n"
+      "<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n{2}<main>\n",
+      title, style, contents(document));
+  int sections = 0;
+  auto const print = Overload{
+      [&](Heading const& heading) {
+        std::string const id = heading.level == 2 ? fmt::format(" id=\"section-{}\"", ++sections) : "";
+        out += fmt::format("<h{0}{1}>{2}</h{0}>\n", heading.level, id, escape_html(heading.text));
+      },
+      [&](Paragraph const& paragraph) { out += fmt::format("<p>{}</p>\n", render(paragraph.text)); },
+      [&](Table const& table) { out += render(table); },
+      [&](Figure const& figure) { out += render(figure); },
+  };
+  for (Block const& block : document.blocks) std::visit(print, block);
+  return out + "</main>\n</body>\n</html>\n";
+}
+
+}  // namespace polhode::report

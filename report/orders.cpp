@@ -1,0 +1,75 @@
+#include <fmt/format.h>
+
+#include "report/sections.hpp"
+#include "report/text.hpp"
+
+namespace polhode::report {
+namespace {
+
+using results::Record;
+
+/// Errors below are round-off, not the method's.
+constexpr double round_off = 1e-12;
+/// Errors above are too large for the leading term to rule [rad].
+constexpr double asymptotic = 0.1;
+
+bool is_usable(Record const& run) {
+  auto const error = finite(run.attitude_error_end);
+  double const bar = finite(run.reference_bar).value_or(0);
+  return is_ok(run) && error && *error > std::max(10 * bar, round_off) && *error < asymptotic && finite(run.of.h) &&
+         *run.of.h > 0;
+}
+
+}  // namespace
+
+void add_orders(Document& document, Facts const& facts) {
+  document.heading(2, "6. Measured orders");
+  document.say(
+      fmt::format("Least squares of the logarithm of the attitude error at the end against that of h, over errors "
+                  "above ten times the reference's bar and {} rad (round-off), and below {} rad. The interval holds "
+                  "the slope with 95% confidence; it is wide where the points do not lie on a line.",
+                  significant(round_off), significant(asymptotic)));
+  Table table{.name = "orders",
+              .caption = "Measured order of each method with fixed steps.",
+              .columns = {{"problem"},
+                          {"integrator"},
+                          {"formulation"},
+                          {"policy"},
+                          {"order", true},
+                          {"± 95%", true},
+                          {"points", true},
+                          {"h from [s]", true},
+                          {"to [s]", true}},
+              .rows = {}};
+  std::size_t left_out = 0;
+  for (Instance const& instance : facts.instances) {
+    for (Sweep const& sweep : instance.sweeps()) {
+      if (!sweep.like().h) continue;
+      std::vector<std::pair<double, double>> points;
+      for (Record const* run : sweep.runs) {
+        if (is_usable(*run)) points.emplace_back(*run->of.h, *run->attitude_error_end);
+      }
+      auto const order = fit_order(points);
+      if (!order || order->points < 3) {
+        ++left_out;
+        continue;
+      }
+      auto const& c = sweep.like();
+      auto const fixed = [](double value) { return Entry(fmt::format("{:.2f}", value), exact(value)); };
+      table.rows.push_back({instance.label, c.integrator, c.formulation, c.policy, fixed(order->slope),
+                            fixed(*order->half_width), std::to_string(order->points), number(points.back().first),
+                            number(points.front().first)});
+    }
+  }
+  if (table.rows.empty()) {
+    document.say("No method has three such points, so no order can be measured.");
+  } else {
+    document.add(std::move(table));
+    if (left_out > 0) {
+      document.say(fmt::format("{} left out: fewer than three such points.",
+                               left_out == 1 ? "1 sweep is" : std::to_string(left_out) + " sweeps are"));
+    }
+  }
+}
+
+}  // namespace polhode::report

@@ -1,0 +1,63 @@
+#include "report/report.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+
+#include "report/render.hpp"
+#include "report/sections.hpp"
+#include "report/text.hpp"
+
+namespace polhode::report {
+namespace {
+
+Document document_of(results::Contents const& contents) {
+  Facts const facts(contents);
+  Document document{.title = "Polhode: report", .blocks = {}};
+  document.say(
+      Text({{fmt::format("Made from {} alone by ", counted(facts.runs.size(), "record", "records"))},
+            {"polhode report DIR", true},
+            {", DIR being the folder of results. Angles are in radians unless said otherwise, times in seconds."}}));
+  add_answer(document, facts);
+  add_drift(document, facts);
+  add_work_precision(document, facts);
+  add_control_cases(document, facts);
+  add_claims(document, facts);
+  add_orders(document, facts);
+  add_failures(document, facts);
+  add_references(document, facts);
+  add_provenance(document, facts);
+  return document;
+}
+
+void write(std::filesystem::path const& file, std::string const& text) {
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) throw ReportError(fmt::format("{}: cannot be written", file.string()));
+}
+
+void make_folder(std::filesystem::path const& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw ReportError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+}
+
+}  // namespace
+
+void write_report(results::Contents const& contents, std::filesystem::path const& out) {
+  Document document = document_of(contents);
+  make_folder(out / "tables");
+  make_folder(out / "figures");
+  for (Block& block : document.blocks) {
+    if (auto const* table = std::get_if<Table>(&block)) write(out / "tables" / (table->name + ".csv"), to_csv(*table));
+    if (auto* figure = std::get_if<Figure>(&block)) {
+      write(out / "figures" / (figure->name + ".csv"), to_csv(*figure));
+      draw(*figure, out / "figures");
+    }
+  }
+  write(out / "report.md", to_markdown(document));
+  write(out / "report.html", to_html(document));
+}
+
+}  // namespace polhode::report

@@ -1,0 +1,37 @@
+#pragma once
+/// Numbers and lists in words: how many digits, which unit.
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "report/document.hpp"
+
+namespace polhode::report {
+
+/// What stands where a run has no such value.
+inline constexpr char const* absent = "–";
+
+/// A number with so many significant digits, e.g. "5.03e-10"; `absent` if it is not finite.
+std::string significant(double value, int digits = 3);
+/// The shortest text that reads back as the same number; empty if it is not finite.
+std::string exact(double value);
+/// A table's entry: rounded to read, exact in the CSV file.
+Entry number(std::optional<double> value, int digits = 3);
+/// A CPU time in the unit that suits it, e.g. "12.3 us"; seconds in the CSV file.
+std::string duration(double seconds);
+
+double degrees(double radians);
+double arcseconds(double radians);
+/// "5.03e-10 rad (0.000104 arcsec)".
+std::string angle(double radians);
+
+/// "a", "a and b", "a, b and c".
+std::string listed(std::vector<std::string> const& words);
+/// "1 run", "2 runs".
+std::string counted(std::size_t n, std::string_view singular, std::string_view plural);
+
+/// One line of valid UTF-8 without control characters: what every renderer may rely on.
+std::string one_line(std::string_view text);
+
+}  // namespace polhode::report
