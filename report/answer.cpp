@@ -71,7 +71,7 @@ std::string norm_sentence(Facts const& facts, std::map<std::string, Keeping> con
   std::string text = "Without projection no integrator here keeps the quaternion's norm to 1e-13";
   if (!keepers.empty()) {
     text = fmt::format(
-        "Without projection {} the quaternion's norm to better than 1e-13 in every run here (largest "
+        "Without projection {} the quaternion's norm to better than 1e-13 in every successful run here (largest "
         "drift {}",
         listed(keepers) + (keepers.size() == 1 ? " keeps" : " keep"), significant(all.worst, 2));
     if (all.h_high > 0) text += fmt::format(", h from {} to {} s", significant(all.h_low), significant(all.h_high));
@@ -223,6 +223,10 @@ std::string cost_text(double value, Measure measure) {
   return measure == Measure::time ? duration(value) : significant(value, 4) + " evaluations";
 }
 
+std::string cost_text(Cost const& cost, Measure measure) {
+  return (cost.interpolated ? "≈ " : "") + cost_text(cost.value, measure);
+}
+
 /// Who reaches one accuracy on one problem at the least cost.
 struct Verdict {
   std::vector<Cost> costs;
@@ -246,17 +250,17 @@ std::string verdict_text(Verdict const& v, double target, Measure measure) {
   std::string const goal = significant(target) + " rad";
   if (!v.best) return "no run reaches " + goal;
   std::string text = fmt::format("{}{} reaches {} in {}", Verdict::rival(*v.best) ? "the rival " : "",
-                                 method_of(v.best->run->of), goal, cost_text(v.best->value, measure));
+                                 method_of(v.best->run->of), goal, cost_text(*v.best, measure));
   if (!v.opponent) {
     return text + (Verdict::rival(*v.best) ? ", and none of our own methods does" : ", and no rival here does");
   }
   std::string const camp = Verdict::rival(*v.best) ? "our best own method " : "the best rival ";
   if (v.tied()) {
     return text + fmt::format(", which is no measurable difference to {}{} ({})", camp, method_of(v.opponent->run->of),
-                              cost_text(v.opponent->value, measure));
+                              cost_text(*v.opponent, measure));
   }
   return text + fmt::format(", {} times less than {}{} ({})", significant(v.opponent->value / v.best->value), camp,
-                            method_of(v.opponent->run->of), cost_text(v.opponent->value, measure));
+                            method_of(v.opponent->run->of), cost_text(*v.opponent, measure));
 }
 
 std::string cost_sentence(Facts const& facts) {
@@ -278,7 +282,7 @@ Table winners(Facts const& facts) {
   Table table{.name = "answer",
               .caption =
                   "Cheapest way to a given attitude error (largest over the run), own methods against rivals. "
-                  "Costs marked ~ are interpolated between two runs, in logarithms; section 3 has the runs.",
+                  "Costs marked ≈ are interpolated between two runs, in logarithms; section 3 has the runs.",
               .columns = {{"problem"},
                           {"attitude error [rad]", true},
                           {"[arcsec]", true},
@@ -290,9 +294,7 @@ Table winners(Facts const& facts) {
               .rows = {}};
   for (Instance const* instance : asked_instances(facts, true)) {
     Measure const measure = measure_of(*instance);
-    auto const cost = [&](Cost const& c) {
-      return Entry((c.interpolated ? "~ " : "") + cost_text(c.value, measure), exact(c.value));
-    };
+    auto const cost = [&](Cost const& c) { return Entry(cost_text(c, measure), exact(c.value)); };
     for (double const target : {1e-6, 1e-9}) {
       Verdict const v(ranking(*instance, target, measure));
       std::vector<Entry> row{instance->label, number(target), number(arcseconds(target))};

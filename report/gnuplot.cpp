@@ -31,7 +31,7 @@ constexpr char const* grey = "#9A9A9A";
 
 // The layout, in pixels.
 constexpr double plot_width = 300, wide_plot_width = 560, plot_height = 300, low_plot_height = 170;
-constexpr double left = 84, right = 18, top = 16, bottom = 54, letter = 7.2, key_line = 22.5;
+constexpr double left = 84, right = 18, top = 16, bottom = 54, letter = 7.6, key_line = 22.5;
 
 /// A gnuplot string. In single quotes nothing is expanded: no backticks, no macros, no escapes.
 std::string in_quotes(std::string_view raw) {
@@ -89,14 +89,17 @@ std::string axis_commands(char name, Axis const& axis, Range range) {
                      "set {0}range [{1}:{2}]\n",
                      name, range.low - spare, range.high + spare);
   }
-  // A point on the frame would be cut in half: leave it a tenth of a decade.
-  int const low = static_cast<int>(std::floor(std::log10(range.low) - 0.1));
-  int const high = std::max(low + 1, static_cast<int>(std::ceil(std::log10(range.high) + 0.1)));
-  int const step = (high - low + 8) / 9;
+  // A point on the frame would be cut in half; and with fewer than two decades labelled nobody could read the scale.
+  double low = std::log10(range.low) - 0.15, high = std::log10(range.high) + 0.15;
+  if (std::floor(high) - std::ceil(low) < 1) {
+    low = std::floor(low);
+    high = std::max(low + 1, std::ceil(high));
+  }
+  double const first = std::ceil(low), last = std::floor(high), step = std::floor((last - first + 8) / 9);
   return out + fmt::format(
                    "set logscale {0}\nset format {0} '10^{{%L}}'\nset {0}tics 1e{1}, 1e{2}, 1e{3}\n"
-                   "set m{0}tics {4}\nset {0}range [1e{1}:1e{3}]\n",
-                   name, low, step, high, step == 1 ? 10 : step);
+                   "set m{0}tics {4}\nset {0}range [{5}:{6}]\n",
+                   name, first, step, last, step > 1 ? step : 10, std::pow(10, low), std::pow(10, high));
 }
 
 std::string line_look(Style const& style) {
@@ -207,8 +210,13 @@ std::string gnuplot_script(Figure const& figure) {
   double const cell_width = (columns == 1 ? wide_plot_width : plot_width) + left + right;
   double const cell_height = (rows > 2 ? low_plot_height : plot_height) + top + bottom;
   Legend const legend = legend_of(figure);
-  double const width = columns * cell_width + 60 + letter * static_cast<double>(legend.longest);
-  double const height = std::max(rows * cell_height, top + key_line * (static_cast<double>(legend.entries.size()) + 1));
+  // The legend stands to the right of the panels, or in the place that they leave free.
+  int const in_last_row = static_cast<int>(figure.panels.size()) % columns;
+  double const key_x = (in_last_row > 0 ? in_last_row : columns) * cell_width + (in_last_row > 0 ? left : 4);
+  double const key_y = (in_last_row > 0 ? (rows - 1) * cell_height : 0) + top;
+  double const width = std::max(columns * cell_width, key_x + 60 + letter * static_cast<double>(legend.longest));
+  double const height =
+      std::max(rows * cell_height, key_y + key_line * (static_cast<double>(legend.entries.size()) + 1));
 
   Range all_y;
   for (Panel const& panel : figure.panels) {
@@ -225,7 +233,9 @@ std::string gnuplot_script(Figure const& figure) {
       Curve const& curve = panel.curves[k];
       std::string const block = fmt::format("$p{}c{}", i, k);
       data += data_block(block, panel, curve, -1);
-      for (int const mark : {0, 1}) data += data_block(fmt::format("{}_{}", block, mark), panel, curve, mark);
+      for (int const mark : {0, 1}) {
+        if (curve.style.points) data += data_block(fmt::format("{}_{}", block, mark), panel, curve, mark);
+      }
       plot_clauses(clauses, block, panel, curve);
     }
     if (clauses.empty()) continue;

@@ -35,14 +35,24 @@ std::string render(Text const& text) {
   return out;
 }
 
+/// In a row a bar ends the entry, even where it is otherwise harmless.
+std::string render_entry(std::string_view text) {
+  std::string out;
+  for (char const c : escape_markdown(text)) {
+    if (c == '|') out += '\\';
+    out += c;
+  }
+  return out;
+}
+
 std::string render(Table const& table) {
   std::string out = fmt::format("**Table {}.** {}\n\n|", escape_markdown(table.name), render(table.caption));
-  for (Column const& column : table.columns) out += fmt::format(" {} |", escape_markdown(column.title));
+  for (Column const& column : table.columns) out += fmt::format(" {} |", render_entry(column.title));
   out += "\n|";
   for (Column const& column : table.columns) out += column.number ? "---:|" : "---|";
   for (auto const& row : table.rows) {
     out += "\n|";
-    for (Entry const& entry : row) out += fmt::format(" {} |", escape_markdown(entry.text));
+    for (Entry const& entry : row) out += fmt::format(" {} |", render_entry(entry.text));
   }
   return out + fmt::format("\n\nFull precision: [tables/{0}.csv](tables/{0}.csv). Made by `polhode report DIR`.\n\n",
                            table.name);
@@ -77,12 +87,13 @@ std::string escape_markdown(std::string_view raw) {
       case '_':  // between letters it is no emphasis, and names stay readable
         out += inside ? "_" : "\\_";
         break;
+      case ']':  // a link needs what follows
+        if (i + 1 < text.size() && std::string_view("([:").find(text[i + 1]) != std::string_view::npos) out += '\\';
+        out += c;
+        break;
       case '\\':
       case '`':
       case '*':
-      case '[':
-      case ']':
-      case '|':
       case '~':
       case '$':
         out += '\\';

@@ -15,6 +15,7 @@
 #include "report/render.hpp"
 #include "report/report.hpp"
 #include "report/text.hpp"
+#include "tests/report_samples.hpp"
 
 namespace polhode::report {
 namespace {
@@ -23,6 +24,8 @@ namespace fs = std::filesystem;
 using results::Contents;
 using results::Record;
 using results::Series;
+using samples::full;
+using samples::made;
 
 /// A folder that goes with its test.
 struct Folder {
@@ -77,104 +80,6 @@ bool is_well_formed(std::string const& xml) {
     i = end;
   }
   return open.empty();
-}
-
-struct Method {
-  std::string name;
-  double order, constant, cost, drift;
-};
-
-/// A run whose error is constant * h^order, never better than the bar.
-Record made(std::string problem, std::string variant, Method const& m, double h, std::string policy = "none") {
-  constexpr double bar = 1e-14;
-  Record r;
-  r.of.problem = std::move(problem);
-  r.of.variant = std::move(variant);
-  r.of.formulation = "quaternion";
-  r.of.integrator = m.name;
-  r.of.policy = std::move(policy);
-  r.of.h = h;
-  r.of.t_end = 50;
-  r.cell = fmt::format("{}/{}/{}/{}/{}", r.of.problem, r.of.variant, m.name, r.of.policy, h);
-  r.build = "b1";
-  r.steps = static_cast<std::int64_t>(50 / h);
-  r.evaluations = static_cast<std::int64_t>(m.cost) * *r.steps;
-  r.norm_drift_raw_max = m.drift;
-  r.norm_drift_max = r.of.policy == "none" ? m.drift : 2.2e-16;
-  r.attitude_error_max = std::max(bar, m.constant * std::pow(h, m.order));
-  r.attitude_error_end = r.attitude_error_max;
-  r.reference = "free_body.elliptic";
-  r.reference_bar = bar;
-  double const t = 2e-8 * static_cast<double>(*r.evaluations);
-  r.cpu_time_s = results::CpuTime{t, 0.98 * t, 1.02 * t, 5};
-  return r;
-}
-
-Series drift_of(Record const& r) {
-  Series s{r.cell, "drift", {"t", "norm_drift", "norm_drift_raw", "attitude_error"}, {"s", "", "", "rad"}, {}};
-  for (int i = 0; i <= 500; ++i) {
-    double const t = 0.1 * i;
-    s.rows.push_back({t, *r.norm_drift_max * t / 50, *r.norm_drift_raw_max * t / 50, 1e-9 * t});
-  }
-  return s;
-}
-
-Series history_of(Record const& r, int which) {
-  Series s{r.cell,
-           "history",
-           {"t", "q1", "q2", "q3", "q4", "wx", "wy", "wz", "alpha", "tether_force", "energy_c"},
-           {"s", "", "", "", "", "rad/s", "rad/s", "rad/s", "rad", "N", "N^2 m^2 s"},
-           {}};
-  for (int i = 0; i <= 500; ++i) {
-    double const t = 0.1 * i, alpha = 0.92 * std::exp(-t / (8 + 4 * which)) * (which == 1 ? std::cos(t) : 1);
-    double const q = std::sin(alpha / 2), w = 0.17 * std::exp(-t / 6);
-    s.rows.push_back({t, 0, 0.6 * q, 0.8 * q, std::cos(alpha / 2), w, w * std::cos(t / (1 + which)), -w, alpha, 0,
-                      100.0 * (which + 1) * (1 - std::exp(-t / 10))});
-  }
-  return s;
-}
-
-/// A set like the default suite's.
-Contents full() {
-  std::vector<Method> const methods{{"rk4", 4, 5e-3, 4, 8e-11},        {"dopri5", 5, 2e-3, 6, 3e-12},
-                                    {"gauss1", 2, 1e-2, 6, 1e-15},     {"gauss2", 4, 5e-6, 12, 2e-15},
-                                    {"gauss3", 6, 1e-7, 18, 3e-15},    {"gauss2_sweeps1", 2, 2e-2, 4, 7e-6},
-                                    {"odeint_rk4", 4, 5e-3, 5, 8e-11}, {"cvode_adams", 3, 1e-4, 2, 4e-8}};
-  Contents c;
-  for (Method const& m : methods) {
-    for (double const h : {0.0125, 0.025, 0.05, 0.1, 0.2}) {
-      for (auto const* policy : {"none", "project"}) {
-        for (auto const* problem : {"free_body", "tether_capture"}) {
-          std::string const variant = problem == std::string("free_body") ? "" : "free,g1";
-          c.records.push_back(made(problem, variant, m, h, policy));
-          if (h == 0.1 && !variant.empty()) c.series.push_back(drift_of(c.records.back()));
-        }
-      }
-    }
-  }
-  int which = 0;
-  for (auto const* variant : {"case1,g1", "case2,g1", "case3,g1"}) {
-    for (Method const& m : methods) {
-      for (double const h : {0.0125, 0.025, 0.05, 0.1}) {
-        Record r = made("tether_capture", variant, m, h);
-        double const energy[] = {266.0679905645, 0, 324.9367918187};
-        r.claims["energy_c"] = {energy[which], std::nullopt, "reproduced"};
-        r.claims["alpha_end"] = {which == 1 ? 0.3213 : 0.0002, std::nullopt,
-                                 which == 1 ? "not reproduced" : "reproduced"};
-        c.records.push_back(r);
-        if (h == 0.1) c.series.push_back(history_of(r, which));
-      }
-    }
-    ++which;
-  }
-  Record failed = c.records.front();
-  failed.cell = "failed";
-  failed.of.integrator = "euler";
-  failed.status = results::Status::diverged;
-  failed.reason = "the state is not finite at t = 3 s";
-  c.records.push_back(failed);
-  c.metas.push_back({{"cpu", "made-up"}, {"compiler", "g++ 12.2"}});
-  return c;
 }
 
 /// Writes the report and returns its Markdown.
@@ -415,7 +320,7 @@ TEST(Facts, ALaterBuildReplacesARun) {
 }
 
 TEST(Text, Escapes) {
-  EXPECT_EQ(escape_markdown("a|b*c_d [e](f) <g>"), "a\\|b\\*c_d \\[e\\](f) &lt;g&gt;");
+  EXPECT_EQ(escape_markdown("a|b*c_d [e](f) <g>"), "a|b\\*c_d [e\\](f) &lt;g&gt;");
   EXPECT_EQ(escape_html("<a href=\"x\">&'"), "&lt;a href=&quot;x&quot;&gt;&amp;&#39;");
   EXPECT_EQ(one_line("a\nb\xff\xc0\x80"), "a b\uFFFD\uFFFD\uFFFD");
   Table const table{
