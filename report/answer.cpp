@@ -96,8 +96,10 @@ std::string norm_sentence(Facts const& facts, std::map<std::string, Keeping> con
     raw = std::max(raw, finite(run->norm_drift_raw_max).value_or(0));
   }
   if (raw > 0 || delivered > 0) {
-    text += fmt::format("; with projection every method delivers it to {}, though a single step still leaves up to {}",
-                        significant(delivered, 2), significant(raw, 2));
+    text += fmt::format(
+        "; with projection what is delivered stays within {} in every method, though a step before its projection is "
+        "off by up to {}",
+        significant(delivered, 2), significant(raw, 2));
   }
   return text + ".";
 }
@@ -252,9 +254,9 @@ std::string verdict_text(Verdict const& v, double target, Measure measure) {
   std::string text = fmt::format("{}{} reaches {} in {}", Verdict::rival(*v.best) ? "the rival " : "",
                                  method_of(v.best->run->of), goal, cost_text(*v.best, measure));
   if (!v.opponent) {
-    return text + (Verdict::rival(*v.best) ? ", and none of our own methods does" : ", and no rival here does");
+    return text + (Verdict::rival(*v.best) ? ", and no own method does" : ", and no rival here does");
   }
-  std::string const camp = Verdict::rival(*v.best) ? "our best own method " : "the best rival ";
+  std::string const camp = Verdict::rival(*v.best) ? "the best own method " : "the best rival ";
   if (v.tied()) {
     return text + fmt::format(", which is no measurable difference to {}{} ({})", camp, method_of(v.opponent->run->of),
                               cost_text(*v.opponent, measure));

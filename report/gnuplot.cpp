@@ -219,9 +219,11 @@ std::string gnuplot_script(Figure const& figure) {
       std::max(rows * cell_height, key_y + key_line * (static_cast<double>(legend.entries.size()) + 1));
 
   Range all_y;
-  for (Panel const& panel : figure.panels) {
-    Range const y = Extent(panel).y;
+  std::size_t last_drawn = 0;
+  for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+    Range const y = Extent(figure.panels[i]).y;
     if (!y.any) continue;
+    last_drawn = i;
     all_y.include(y.low);
     all_y.include(y.high);
   }
@@ -239,8 +241,9 @@ std::string gnuplot_script(Figure const& figure) {
       plot_clauses(clauses, block, panel, curve);
     }
     if (clauses.empty()) continue;
-    bool const first = plots.empty();
-    if (first) clauses.insert(clauses.end(), legend.entries.begin(), legend.entries.end());
+    // gnuplot drops what it would have to draw below the panel that it draws the legend with: so take the lowest.
+    bool const last = i == last_drawn;
+    if (last) clauses.insert(clauses.end(), legend.entries.begin(), legend.entries.end());
     Extent const extent(panel);
     double const x0 = static_cast<double>(static_cast<int>(i) % columns) * cell_width;
     double const y0 = height - static_cast<double>(static_cast<int>(i) / columns + 1) * cell_height;
@@ -250,11 +253,11 @@ std::string gnuplot_script(Figure const& figure) {
                          (y0 + cell_height - top) / height);
     plots += axis_commands('x', panel.x, extent.x);
     plots += axis_commands('y', panel.y, figure.same_y ? all_y : extent.y);
-    plots += first ? fmt::format(
-                         "set key at screen {}, screen {} left top vertical Left reverse noenhanced samplen 2.5 "
-                         "spacing 1.15 textcolor rgb '#333333'\n",
-                         (columns * cell_width + 4) / width, 1 - top / height)
-                   : "unset key\n";
+    plots += last ? fmt::format(
+                        "set key at screen {}, screen {} left top vertical Left reverse noenhanced samplen 2.5 "
+                        "spacing 1.15 textcolor rgb '#333333'\n",
+                        key_x / width, 1 - key_y / height)
+                  : "unset key\n";
     plots += "plot " + joined(clauses) + "\n";
   }
   return fmt::format(

@@ -15,7 +15,7 @@ body { margin: 0 auto; padding: 1rem; max-width: 62rem; background: var(--page);
   font: 1rem/1.5 system-ui, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif; overflow-wrap: break-word; }
 h1, h2, h3 { line-height: 1.25; }
 h2 { margin-top: 2.5rem; border-top: 1px solid var(--rule); padding-top: 1rem; }
-nav ol { columns: 18rem; }
+nav ul { columns: 18rem; list-style: none; padding: 0; }
 a { color: inherit; }
 figure { margin: 1.5rem 0; }
 figcaption { color: var(--quiet); font-size: .9rem; margin: .4rem 0; }
@@ -104,7 +104,7 @@ std::string render(Figure const& figure) {
 }
 
 std::string contents(Document const& document) {
-  std::string out = "<nav><ol>\n";
+  std::string out = "<nav><ul>\n";
   int n = 0;
   for (Block const& block : document.blocks) {
     auto const* heading = std::get_if<Heading>(&block);
@@ -112,7 +112,7 @@ std::string contents(Document const& document) {
       out += fmt::format("<li><a href=\"#section-{}\">{}</a></li>\n", ++n, escape_html(heading->text));
     }
   }
-  return out + "</ol></nav>\n";
+  return out + "</ul></nav>\n";
 }
 
 }  // namespace

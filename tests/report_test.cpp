@@ -2,6 +2,7 @@
 // a record escapes its place in Markdown, HTML, CSV or gnuplot's script.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -31,7 +32,7 @@ using samples::made;
 struct Folder {
   fs::path path =
       fs::path(testing::TempDir()) /
-      fmt::format("polhode-report-{}-{}", ::getpid(), testing::UnitTest::GetInstance()->current_test_info()->name());
+      fmt::format("polhode report's-{}-{}", ::getpid(), testing::UnitTest::GetInstance()->current_test_info()->name());
   Folder() { fs::remove_all(path); }
   ~Folder() {
     if (std::getenv("POLHODE_KEEP_REPORTS") == nullptr) fs::remove_all(path);
@@ -214,7 +215,41 @@ TEST(Report, ARivalThatWinsIsNamed) {
   }
   std::string const text = markdown_of(c, folder.path);
   EXPECT_TRUE(contains(text, "the rival odeint_dopri5 (quaternion) reaches 1e-6 rad")) << text.substr(0, 2000);
-  EXPECT_TRUE(contains(text, "2 times less than our best own method gauss2 (quaternion)"));
+  EXPECT_TRUE(contains(text, "2 times less than the best own method gauss2 (quaternion)"));
+}
+
+TEST(Report, ThreeCasesAreJudgedTogether) {
+  Contents c = full();
+  for (Record& r : c.records) {
+    for (auto& [name, claim] : r.claims) claim.verdict = "reproduced";
+  }
+  Folder const folder;
+  EXPECT_TRUE(contains(markdown_of(c, folder.path), "Every published claim is satisfied by tether_capture g1, 50 s."));
+  // The order of the energies counts like a claim.
+  for (Record& r : c.records) {
+    if (r.of.variant == "case2,g1") r.claims["energy_c"].value = 300;
+  }
+  EXPECT_TRUE(contains(markdown_of(c, folder.path),
+                       "satisfies every published claim: tether_capture g1, 50 s misses E2 &lt; E1 &lt; E3."));
+  std::erase_if(c.records, [](Record const& r) { return r.of.variant == "case2,g1"; });
+  EXPECT_TRUE(
+      contains(markdown_of(c, folder.path),
+               "are there for tether_capture g1, 50 s: whether everything published is satisfied cannot be judged."));
+}
+
+TEST(Report, TrackOfTheCapturePoint) {
+  Contents c;
+  c.records.push_back(made("tether_capture", "case1,g1", {"gauss2", 4, 5e-6, 12, 2e-15}, 0.1));
+  Series s{c.records[0].cell, "history", {"t", "q1", "q2", "q3", "q4"}, {"s", "", "", "", ""}, {}};
+  s.rows = {{0, 0.227, 0.383, 0.227, 0.866}, {0.1, 0, 0, 0, 1}};  // the paper's initial attitude, and the target
+  c.series.push_back(s);
+  Folder const folder;
+  std::string const text = markdown_of(c, folder.path);
+  std::string const csv = slurp(folder.path / "figures" / "control-1-track.csv");
+  EXPECT_TRUE(contains(csv, "y [m] against x [m],case 1,-1.206")) << csv;
+  EXPECT_TRUE(contains(csv, "z [m] against y [m],case 1,-1.134")) << csv;
+  EXPECT_TRUE(contains(csv, "y [m] against x [m],case 1,-2,")) << csv;
+  EXPECT_TRUE(contains(text, "no column for a figure of the angle"));
 }
 
 TEST(Report, FiguresAreWellFormed) {
