@@ -156,12 +156,15 @@ struct Gauss {
   /// True when the changes of all components are 0, or none of them was smaller than ever, twice running.
   template <class V>
   struct Stagnation {
-    V least;
+    V least = [] {
+      V huge;
+      V::each([](auto& a) POLHODE_LAMBDA { a = std::decay_t<decltype(a)>(1e300); }, huge);
+      return huge;
+    }();
     int idle = 0;
-    bool first = true;
+
     POLHODE_INLINE bool reached(V const& change) {
-      bool smaller = first, still = true;
-      if (first) least = change;
+      bool smaller = false, still = true;
       V::each(
           [&](auto& low, auto const& now) POLHODE_LAMBDA {
             using S = std::decay_t<decltype(now)>;
@@ -170,7 +173,6 @@ struct Gauss {
             low = now < low ? now : low;
           },
           least, change);
-      first = false;
       idle = smaller ? 0 : idle + 1;
       return still || idle == 2;
     }

@@ -61,7 +61,8 @@ struct MethodInfo {
   bool rival = false;
   std::string_view source;
   std::string_view pitfall = "";
-  std::string_view not_built = "";  ///< why this binary refuses it
+  std::string_view no_projection = "";  ///< why policy `project` is refused
+  std::string_view not_built = "";      ///< why this binary refuses it
 };
 
 template <class T, class P>

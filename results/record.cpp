@@ -335,14 +335,16 @@ std::string canonical_text(Cell const& cell) {
   return text;
 }
 
-std::string cell_id(Cell const& cell) {
+std::string hash_of(std::string_view text) {
   std::uint64_t hash = 0xcbf29ce484222325;
-  for (char const c : canonical_text(cell)) {
+  for (char const c : text) {
     hash ^= static_cast<unsigned char>(c);
     hash *= 0x100000001b3;
   }
   return fmt::format("{:016x}", hash);
 }
+
+std::string cell_id(Cell const& cell) { return hash_of(canonical_text(cell)); }
 
 Json to_json(Record const& record) {
   Json json = start("run");

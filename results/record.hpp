@@ -67,7 +67,9 @@ void for_each_cell_field(C& cell, Visit&& visit) {
 /// The text that a cell's id is the hash of: every member, in order, numbers with 17 significant digits. A number that
 /// is not finite counts as null, as in JSON, so that an id outlives being written and read.
 std::string canonical_text(Cell const& cell);
-/// 16 hexadecimal digits: FNV-1a, 64 bits, of canonical_text.
+/// 16 hexadecimal digits of a text: FNV-1a, 64 bits. Tells texts apart; keeps no secrets.
+std::string hash_of(std::string_view text);
+/// hash_of the canonical text.
 std::string cell_id(Cell const& cell);
 
 /// One of the paper's claims, held against one run.

@@ -162,9 +162,9 @@ struct Cvode {
                                    .rival = true,
                                    .source = "SUNDIALS 6.4 CVODE; Hindmarsh et al. (2005)",
                                    .pitfall = "a multistep history is lost at every sample: each restarts at order 1",
-                                   .not_built = sundials_not_built};
+                                   .no_projection = "projection would break the multistep history that the next step extrapolates",
+      .not_built = sundials_not_built};
 #ifdef POLHODE_HAS_SUNDIALS
-  /// Refuses projection: between CVODE's steps it would break the history that its next step extrapolates.
   template <Problem P>
     requires FlatSpace<typename P::Space> && std::same_as<typename P::Space::Scalar, double>
   auto bind(P const& p, Adaptive control, NormPolicy) const {

@@ -1,0 +1,83 @@
+#pragma once
+/// The integrators on every space, behind function pointers: the type of a method is forgotten here, once per solve.
+#include <cstdint>
+#include <memory>
+#include <variant>
+
+#include "bench/run_loop.hpp"
+#include "integrators/catalog.hpp"
+
+namespace polhode::bench {
+
+/// How a method is driven.
+using Control = std::variant<FixedStep, Adaptive>;
+
+/// One run: its stops, its control, its norm policy.
+struct Plan {
+  std::vector<Stop> stops;
+  Control control;
+  NormPolicy policy = NormPolicy::none;
+
+  double h() const { return std::holds_alternative<FixedStep>(control) ? std::get<FixedStep>(control).h : 0; }
+};
+
+/// What a run did.
+struct Outcome {
+  Status status = Status::ok;
+  Work work;
+  Projections projections;
+  std::int64_t evaluations = 0;
+};
+
+/// Sees every stop and every accepted step of a run on space M. `projections` is what projection has done so far: the raw
+/// drift of the last step is in it.
+template <Space M>
+class Watch {
+ public:
+  static constexpr bool each_step = true;
+  virtual ~Watch() = default;
+  virtual void at_stop(Stop const& stop, Point<M> const& x) = 0;
+  virtual void after_step(double t, Point<M> const& x) = 0;
+};
+
+/// One integrator on one space.
+template <Space M>
+struct MethodOn {
+  using Solve = Outcome (*)(Erased<M>& problem, Plan const& plan, Watch<M>& watch);
+  MethodInfo const* info = nullptr;
+  bool fixed = false, adaptive = false;  ///< which controls the method knows, on any space
+  std::string_view refusal;              ///< why it does not run on this space; empty if it does
+  Solve solve = nullptr;                 ///< null if refused
+};
+
+/// One list of the catalogue on space M, in catalogue order. Methods is OwnMethods or Rivals.
+template <Space M, class Methods>
+std::vector<MethodOn<M>> methods_on();
+
+/// The whole catalogue on space M.
+template <Space M>
+std::vector<MethodOn<M>> const& all_methods_on() {
+  static std::vector<MethodOn<M>> const list = [] {
+    std::vector<MethodOn<M>> own = methods_on<M, OwnMethods>();
+    std::vector<MethodOn<M>> const rivals = methods_on<M, Rivals>();
+    own.insert(own.end(), rivals.begin(), rivals.end());
+    return own;
+  }();
+  return list;
+}
+
+/// Calls f(bound stepper) with the method driven as the plan says.
+template <class Method, Problem P, class F>
+auto with_stepper(Method const& method, P const& problem, Plan const& plan, F f) {
+  if constexpr (!RunsAdaptive<Method, P>) {
+    return f(method.bind(problem, std::get<FixedStep>(plan.control), plan.policy));
+  } else if constexpr (!RunsFixed<Method, P>) {
+    return f(method.bind(problem, std::get<Adaptive>(plan.control), plan.policy));
+  } else {
+    if (std::holds_alternative<FixedStep>(plan.control))
+      return f(method.bind(problem, std::get<FixedStep>(plan.control), plan.policy));
+    return f(method.bind(problem, std::get<Adaptive>(plan.control), plan.policy));
+  }
+}
+
+}  // namespace polhode::bench

@@ -1,0 +1,65 @@
+/// Everything that one problem of the catalogue needs compiled, apart from its timed solves.
+/// POLHODE_PROBLEM is the problem's type; the build makes one unit for each line of problems/catalog.hpp.
+#include "bench/problems.hpp"
+
+namespace polhode::bench {
+namespace {
+
+using D = POLHODE_PROBLEM;
+static_assert(Definition<D>);
+
+class Chosen final : public ChosenProblem {
+ public:
+  explicit Chosen(Choice const& choice) : definition_(choice) {}
+
+  ProblemInfo const& info() const override { return D::info(); }
+  double horizon() const override { return definition_.horizon; }
+  double sample_period() const override { return definition_.sample_period; }
+  bool torque_free() const override { return definition_.torque_free(); }
+  BodyParameters const& body() const override { return definition_.body(); }
+  std::vector<Column> columns() const override { return definition_.columns(); }
+  std::vector<ClaimResult> claims(History const& history) const override { return definition_.claims(history); }
+
+  ProblemInFormulation in(std::string_view formulation) const override { return find(formulation, Formulations{}); }
+  std::unique_ptr<Erased<SeriesSpace>> as_series() const override { return erase<Series, FlatQuaternion>(definition_); }
+  std::unique_ptr<Erased<QuadSpace>> in_quad() const override { return erase<Quad, S3>(definition_); }
+
+  std::unique_ptr<TimedSolve> timed(std::string_view formulation, std::string_view integrator,
+                                    Plan const& plan) const override {
+    auto own = timed_solve<D, OwnMethods>(definition_, formulation, integrator, plan);
+    return own ? std::move(own) : timed_solve<D, Rivals>(definition_, formulation, integrator, plan);
+  }
+
+ private:
+  template <class... F>
+  ProblemInFormulation find(std::string_view name, Types<F...>) const {
+    ProblemInFormulation found;
+    bool const known = ((F::name == name ? (found = erase<double, F::template On>(definition_), true) : false) || ...);
+    if (!known) throw std::out_of_range("no formulation " + std::string(name));
+    return found;
+  }
+
+  D definition_;
+};
+
+class Entry final : public ProblemEntry {
+ public:
+  ProblemInfo const& info() const override { return D::info(); }
+  std::vector<Parameter> parameters() const override { return defaults_.parameters(); }
+  std::unique_ptr<ChosenProblem> choose(Choice const& choice) const override {
+    return std::make_unique<Chosen>(choice);
+  }
+
+ private:
+  mutable D defaults_{Choice{}};  // parameters() hands out references; nobody assigns through these
+};
+
+}  // namespace
+
+template <>
+ProblemEntry const& problem_entry<D>() {
+  static Entry const entry;
+  return entry;
+}
+
+}  // namespace polhode::bench

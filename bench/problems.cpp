@@ -1,0 +1,32 @@
+#include "bench/problems.hpp"
+
+#include <stdexcept>
+
+namespace polhode::bench {
+namespace {
+
+template <class... D>
+std::vector<ProblemEntry const*> entries(Types<D...>) {
+  return {&problem_entry<D>()...};
+}
+template <class... F>
+std::vector<std::string_view> names(Types<F...>) {
+  return {F::name...};
+}
+
+}  // namespace
+
+std::vector<ProblemEntry const*> const& all_problems() {
+  static std::vector<ProblemEntry const*> const list = entries(Problems{});
+  return list;
+}
+
+ProblemEntry const& problem_named(std::string_view name) {
+  for (ProblemEntry const* entry : all_problems())
+    if (entry->info().name == name) return *entry;
+  throw std::out_of_range("no problem " + std::string(name));
+}
+
+std::vector<std::string_view> formulation_names() { return names(Formulations{}); }
+
+}  // namespace polhode::bench
