@@ -11,7 +11,7 @@ namespace {
 std::string field(std::string_view raw, bool number = false) {
   std::string text = one_line(raw);
   if (!number && !text.empty() && std::string_view("=+-@").find(text.front()) != std::string_view::npos) {
-    text.insert(0, 1, '\'');
+    text = fmt::format("'{}", text);
   }
   if (text.find_first_of(",\"") == std::string::npos) return text;
   std::string quoted = "\"";
@@ -32,7 +32,8 @@ bool has_points(Figure const& figure) {
 
 std::string to_csv(Table const& table) {
   std::string out;
-  for (std::size_t i = 0; i < table.columns.size(); ++i) out += (i > 0 ? "," : "") + field(table.columns[i].title);
+  for (std::size_t i = 0; i < table.columns.size(); ++i)
+    out += fmt::format("{}{}", i > 0 ? "," : "", field(table.columns[i].title));
   out += '\n';
   for (auto const& row : table.rows) {
     for (std::size_t i = 0; i < row.size(); ++i) {

@@ -52,6 +52,12 @@ struct Range {
     high = any ? std::max(high, v) : v;
     any = true;
   }
+  /// Widens the range to `half` on either side of its middle.
+  void centre(double half) {
+    double const middle = (low + high) / 2;
+    low = middle - half;
+    high = middle + half;
+  }
 };
 
 bool drawable(Panel const& panel, Point const& p) {
@@ -72,10 +78,8 @@ struct Extent {
     }
     if (!panel.equal_scale) return;
     double const half = std::max(x.high - x.low, y.high - y.low) / 2;
-    for (Range* range : {&x, &y}) {
-      double const middle = (range->low + range->high) / 2;
-      *range = {middle - half, middle + half, true};
-    }
+    x.centre(half);
+    y.centre(half);
   }
 };
 
