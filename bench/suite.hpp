@@ -26,9 +26,15 @@ struct SuiteCell {
 /// Selects records: all keys must match (globs; numbers compared as numbers).
 using Selector = std::map<std::string, std::string>;
 
+/// Whether a cell answers to every key of the selector. Numbers agree within 1e-12, relatively; a variant answers to
+/// its whole text and to any of its words ("case2" selects "case2,g1"); h, rtol and atol that are null answer to
+/// nothing.
+bool matches(Selector const& selector, SuiteCell const& cell);
+
 /// Bounds on one field of the selected records. `golden` is compared with a committed value.
 struct Bound {
-  std::string field;  ///< a record field; "norm_drift" means norm_drift_max; "order" is the fitted order of the selection
+  /// A record field; "norm_drift" means norm_drift_max; "order" is the fitted order of the selection.
+  std::string field;
   std::optional<double> min, max;
   std::optional<std::string> is;
   bool nominal = false;          ///< order: the integrator's nominal order

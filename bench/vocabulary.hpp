@@ -51,18 +51,33 @@ struct Vocabulary {
   IntegratorWord const& integrator(std::string_view name) const;
 };
 
-/// The word of `known` that is nearest to `word` by edit distance, or "" when none is near.
+/// The word of `known` that is nearest to `word` by Damerau-Levenshtein distance, or "" when none is near: a third of
+/// the word may be wrong, and two letters always may.
 std::string nearest(std::string_view word, std::vector<std::string> const& known);
-/// "unknown KIND 'word'; did you mean 'nearest'?", or with the list of all when none is near.
-std::string unknown(std::string_view kind, std::string_view word, std::vector<std::string> const& known);
+/// "unknown KIND 'word'; did you mean 'nearest'?", or with the list of all when none is near. `where` ("of free_body",
+/// "in [[sweep]]") follows the word.
+std::string unknown(std::string_view kind, std::string_view word, std::vector<std::string> const& known,
+                    std::string_view where = "");
+/// A user's word in quotes, safe inside a one-line message: control characters replaced, very long words cut.
+std::string quote(std::string_view word);
 
 /// Brings a variant selection ("g2,case1") into canonical form: one word per group in the order of the groups, defaults
 /// written out, groups whose choice is "" left out. Throws UsageError for unknown words and for two of one group.
 std::string canonical_variant(ProblemWord const& problem, std::string_view selection);
 
+/// The parts of check_words, for readers that know where each word stands. They throw UsageError.
+void check_formulation(ProblemWord const& problem, std::string_view formulation);
+void check_policy(Vocabulary const& vocabulary, std::string_view policy);
+void check_parameter(ProblemWord const& problem, std::string_view name, std::vector<double> const& value);
+/// `name` is "h", "rtol", "atol" or "t_end", all of which are positive and finite.
+void check_positive(std::string_view name, double value);
+/// h xor rtol, as the integrator can; fills in the default atol = rtol / 100.
+void check_control(IntegratorWord const& integrator, results::Cell& cell);
+
 /// Checks a cell's words and numbers against the vocabulary, and puts its variant into canonical form: names, policy,
-/// parameter names and finiteness, h xor rtol, h > 0, fixed or adaptive as the integrator can. Unit checks of parameter
-/// values belong to the problem. Throws UsageError.
+/// parameter names and finiteness, h xor rtol, h > 0, fixed or adaptive as the integrator can; t_end = 0 stands for the
+/// problem's own horizon. Fills in the default atol. Unit checks of parameter values belong to the problem. An
+/// integrator that is not built is a known word: its runs become refusals. Throws UsageError.
 void check_words(Vocabulary const& vocabulary, results::Cell& cell);
 
 }  // namespace polhode::bench

@@ -1,0 +1,207 @@
+#include "bench/vocabulary.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace polhode::bench {
+namespace {
+
+/// Damerau-Levenshtein distance in its restricted form: insert, delete, replace, or swap two neighbours.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> before_last(b.size() + 1), last(b.size() + 1), row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::swap(before_last, last);
+    std::swap(last, row);
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      std::size_t const replaced = last[j - 1] + (a[i - 1] == b[j - 1] ? 0 : 1);
+      row[j] = std::min({last[j] + 1, row[j - 1] + 1, replaced});
+      bool const swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
+      if (swapped) row[j] = std::min(row[j], before_last[j - 2] + 1);
+    }
+  }
+  return row[b.size()];
+}
+
+/// The entry of that name, or UsageError.
+template <class Word>
+Word const& entry(std::string_view kind, std::string_view name, std::vector<Word> const& words) {
+  auto const found = std::find_if(words.begin(), words.end(), [&](Word const& word) { return word.name == name; });
+  if (found != words.end()) return *found;
+  std::vector<std::string> known;
+  for (auto const& word : words) known.push_back(word.name);
+  throw UsageError(unknown(kind, name, known));
+}
+
+void check_known(std::string_view kind, std::string_view word, std::vector<std::string> const& known,
+                 std::string_view where = "") {
+  bool const found = std::find(known.begin(), known.end(), word) != known.end();
+  if (!found) throw UsageError(unknown(kind, word, known, where));
+}
+
+std::string_view trimmed(std::string_view text) {
+  auto const first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
+}
+
+std::vector<std::string_view> split(std::string_view text) {
+  std::vector<std::string_view> words;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    std::size_t const end = std::min(text.find(',', begin), text.size());
+    words.push_back(trimmed(text.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  return words;
+}
+
+/// The index of the group that holds `word`, or UsageError.
+std::size_t group_of(ProblemWord const& problem, std::string_view word) {
+  std::vector<std::string> known;
+  for (std::size_t g = 0; g < problem.variants.size(); ++g) {
+    for (auto const& choice : problem.variants[g]) {
+      if (choice.empty()) continue;
+      if (choice == word) return g;
+      known.push_back(choice);
+    }
+  }
+  throw UsageError(unknown("variant", word, known, "of " + problem.name));
+}
+
+}  // namespace
+
+ProblemWord const& Vocabulary::problem(std::string_view name) const {
+  return entry("problem", name, problems);
+}
+
+IntegratorWord const& Vocabulary::integrator(std::string_view name) const {
+  return entry("integrator", name, integrators);
+}
+
+std::string nearest(std::string_view word, std::vector<std::string> const& known) {
+  std::string best;
+  std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;
+  for (auto const& candidate : known) {
+    std::size_t const longer = std::max(word.size(), candidate.size());
+    std::size_t const shorter = std::min(word.size(), candidate.size());
+    bool const hopeless = candidate.empty() || longer - shorter >= least;
+    if (hopeless) continue;
+    std::size_t const distance = edit_distance(word, candidate);
+    if (distance >= least) continue;
+    least = distance;
+    best = candidate;
+  }
+  return best;
+}
+
+std::string quote(std::string_view word) {
+  constexpr std::size_t longest = 60;
+  std::string text(word.substr(0, longest));
+  if (word.size() > longest) {
+    // Not in the middle of a UTF-8 character.
+    auto const continues = [&](std::size_t i) { return (static_cast<unsigned char>(word[i]) & 0xC0) == 0x80; };
+    while (!text.empty() && continues(text.size())) text.pop_back();
+    text += "...";
+  }
+  for (char& c : text) {
+    bool const control = static_cast<unsigned char>(c) < 0x20 || c == 0x7F;
+    if (control) c = '?';
+  }
+  return "'" + text + "'";
+}
+
+std::string unknown(std::string_view kind, std::string_view word, std::vector<std::string> const& known,
+                    std::string_view where) {
+  auto const what = fmt::format("unknown {} {}{}{}", kind, quote(word), where.empty() ? "" : " ", where);
+  if (known.empty()) return what + "; there are none";
+  auto const near = nearest(word, known);
+  if (!near.empty()) return fmt::format("{}; did you mean '{}'?", what, near);
+  return fmt::format("{}; choose from {}", what, fmt::join(known, ", "));
+}
+
+std::string canonical_variant(ProblemWord const& problem, std::string_view selection) {
+  auto const blank = trimmed(selection).empty();
+  auto const words = blank ? std::vector<std::string_view>{} : split(selection);
+  std::vector<std::string> chosen(problem.variants.size());
+  for (auto const word : words) {
+    if (word.empty()) throw UsageError(fmt::format("variant {}: a word is missing beside a comma", quote(selection)));
+    auto& choice = chosen[group_of(problem, word)];
+    if (choice == word) throw UsageError(fmt::format("variant {}: {} is given twice", quote(selection), word));
+    if (!choice.empty()) {
+      throw UsageError(
+          fmt::format("variant {}: {} and {} exclude each other; give one", quote(selection), choice, word));
+    }
+    choice = word;
+  }
+  std::string text;
+  for (std::size_t g = 0; g < chosen.size(); ++g) {
+    auto const& group = problem.variants[g];
+    auto const word = chosen[g].empty() && !group.empty() ? group.front() : chosen[g];
+    if (word.empty()) continue;
+    if (!text.empty()) text += ',';
+    text += word;
+  }
+  return text;
+}
+
+void check_formulation(ProblemWord const& problem, std::string_view formulation) {
+  check_known("formulation", formulation, problem.formulations, "of " + problem.name);
+}
+
+void check_policy(Vocabulary const& vocabulary, std::string_view policy) {
+  check_known("policy", policy, vocabulary.policies);
+}
+
+void check_parameter(ProblemWord const& problem, std::string_view name, std::vector<double> const& value) {
+  std::vector<std::string> known;
+  for (auto const& parameter : problem.parameters) known.push_back(parameter.name);
+  check_known("parameter", name, known, "of " + problem.name);
+  if (value.empty()) throw UsageError(fmt::format("parameter {}: no value; give at least one number", name));
+  for (double const number : value) {
+    if (std::isfinite(number)) continue;
+    throw UsageError(fmt::format("parameter {}: {} is not a finite number", name, number));
+  }
+}
+
+void check_positive(std::string_view name, double value) {
+  if (std::isfinite(value) && value > 0) return;
+  std::string_view rule = "a tolerance is a positive finite number";
+  if (name == "h") rule = "a step size is a positive finite number of seconds";
+  if (name == "t_end") rule = "a horizon is a positive finite number of seconds";
+  throw UsageError(fmt::format("{} = {}: {}", name, value, rule));
+}
+
+void check_control(IntegratorWord const& integrator, results::Cell& cell) {
+  if (cell.h && cell.rtol) throw UsageError("give h or rtol, not both");
+  if (cell.h && cell.atol) throw UsageError("give h or rtol (and atol), not h and atol");
+  if (cell.atol && !cell.rtol) throw UsageError("atol without rtol: give both, or rtol alone");
+  if (!cell.h && !cell.rtol) throw UsageError("give h (fixed steps) or rtol (adaptive)");
+  if (cell.rtol && !cell.atol) cell.atol = *cell.rtol * 1e-2;
+  if (cell.h) check_positive("h", *cell.h);
+  if (cell.rtol) check_positive("rtol", *cell.rtol);
+  if (cell.atol) check_positive("atol", *cell.atol);
+  if (cell.rtol && !integrator.adaptive) {
+    throw UsageError(fmt::format("{} has no error estimate: give h, not rtol", integrator.name));
+  }
+  if (cell.h && !integrator.fixed) {
+    throw UsageError(fmt::format("{} chooses its own steps: give rtol (and atol), not h", integrator.name));
+  }
+}
+
+void check_words(Vocabulary const& vocabulary, results::Cell& cell) {
+  auto const& problem = vocabulary.problem(cell.problem);
+  auto const& integrator = vocabulary.integrator(cell.integrator);
+  cell.variant = canonical_variant(problem, cell.variant);
+  check_formulation(problem, cell.formulation);
+  check_policy(vocabulary, cell.policy);
+  for (auto const& [name, value] : cell.set) check_parameter(problem, name, value);
+  if (cell.t_end != 0) check_positive("t_end", cell.t_end);
+  check_control(integrator, cell);
+}
+
+}  // namespace polhode::bench
