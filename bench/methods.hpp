@@ -29,15 +29,14 @@ struct Outcome {
   std::int64_t evaluations = 0;
 };
 
-/// Sees every stop and every accepted step of a run on space M. `projections` is what projection has done so far: the raw
-/// drift of the last step is in it.
+/// Sees every stop and every accepted step of a run on space M. `projections` is what projection has done so far.
 template <Space M>
 class Watch {
  public:
   static constexpr bool each_step = true;
   virtual ~Watch() = default;
   virtual void at_stop(Stop const& stop, Point<M> const& x) = 0;
-  virtual void after_step(double t, Point<M> const& x) = 0;
+  virtual void after_step(double t, Point<M> const& x, Projections const& projections) = 0;
 };
 
 /// One integrator on one space.

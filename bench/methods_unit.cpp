@@ -49,7 +49,8 @@ std::vector<MethodOn<M>> methods_on() {
 }
 
 // One line for each formulation of the catalogue.
-template std::vector<MethodOn<RigidBody<FlatQuaternion<double>>>> methods_on<RigidBody<FlatQuaternion<double>>, POLHODE_METHODS>();
+template std::vector<MethodOn<RigidBody<FlatQuaternion<double>>>>
+methods_on<RigidBody<FlatQuaternion<double>>, POLHODE_METHODS>();
 template std::vector<MethodOn<RigidBody<S3<double>>>> methods_on<RigidBody<S3<double>>, POLHODE_METHODS>();
 template std::vector<MethodOn<RigidBody<SO3<double>>>> methods_on<RigidBody<SO3<double>>, POLHODE_METHODS>();
 

@@ -74,7 +74,9 @@ QuadState Reference::at(double t) const {
   return {{value(0), value(1), value(2), value(3)}, {value(4), value(5), value(6)}};
 }
 
-double angle_between(QuadState const& a, QuadState const& b) { return double(polhode::angle_between(a.q, b.q)); }
+double angle_between(QuadState const& a, QuadState const& b) {
+  return double(polhode::angle_between(a.q, b.q));
+}
 
 std::vector<QuadState> solve_by_gauss(ChosenProblem const& problem, Schedule const& schedule, int divisions) {
   std::vector<Stop> const stops = stops_of(schedule);
@@ -88,20 +90,22 @@ std::vector<QuadState> solve_by_gauss(ChosenProblem const& problem, Schedule con
     states.push_back({x.first, x.second});
     if (k + 1 == stops.size()) break;
     if (stepper.advance(x, stops[k].time, stops[k + 1].time) != Status::ok)
-      throw ReferenceError(fmt::format("{}: Gauss in quadruple precision diverged after t = {} s", problem.info().name,
-                                       stops[k].time));
+      throw ReferenceError(
+          fmt::format("{}: Gauss in quadruple precision diverged after t = {} s", problem.info().name, stops[k].time));
   }
   return states;
 }
 
 std::string reference_subject(results::Cell const& cell) {
-  std::string text = fmt::format("problem={};variant={};t_end={:.17g};seed={}", cell.problem, cell.variant, cell.t_end,
-                                 cell.seed);
+  std::string text =
+      fmt::format("problem={};variant={};t_end={:.17g};seed={}", cell.problem, cell.variant, cell.t_end, cell.seed);
   for (auto const& [name, values] : cell.set) text += fmt::format(";{}={:.17g}", name, fmt::join(values, ","));
   return text;
 }
 
-std::string reference_id(results::Cell const& cell) { return results::hash_of(reference_subject(cell)); }
+std::string reference_id(results::Cell const& cell) {
+  return results::hash_of(reference_subject(cell));
+}
 
 Certificate certify(results::Cell const& cell, ChosenProblem const& problem, Schedule const& schedule,
                     Reference const& reference) {
@@ -132,15 +136,16 @@ namespace {
 constexpr std::array names{"q1", "q2", "q3", "q4", "wx", "wy", "wz"};
 
 nlohmann::ordered_json contents_of(Certificate const& c) {
-  nlohmann::ordered_json json{{"schema", results::schema},
-                              {"kind", "reference"},
-                              {"id", c.id},
-                              {"subject", c.subject},
-                              {"methods", {"Taylor, degree 32, float128, flat quaternion", "Gauss, 8 stages, float128, S3"}},
-                              {"bar_rad", c.bar},
-                              {"disagreement_rad", c.disagreement},
-                              {"halving_rad", c.halving},
-                              {"columns", names}};
+  nlohmann::ordered_json json{
+      {"schema", results::schema},
+      {"kind", "reference"},
+      {"id", c.id},
+      {"subject", c.subject},
+      {"methods", {"Taylor, degree 32, float128, flat quaternion", "Gauss, 8 stages, float128, S3"}},
+      {"bar_rad", c.bar},
+      {"disagreement_rad", c.disagreement},
+      {"halving_rad", c.halving},
+      {"columns", names}};
   for (std::size_t k = 0; k < c.times.size(); ++k) {
     nlohmann::ordered_json row{{"t", c.times[k]}};
     for (Quad x : numbers(c.states[k])) {
@@ -174,9 +179,13 @@ Certificate load(std::filesystem::path const& file) {
     auto json = nlohmann::ordered_json::parse(in);
     std::string const hash = json.at("hash");
     json.erase("hash");
-    if (results::hash_of(json.dump()) != hash) throw refuse("its contents do not match their hash: it was edited or damaged");
-    Certificate c{.id = json.at("id"), .subject = json.at("subject"), .bar = json.at("bar_rad"),
-                  .disagreement = json.at("disagreement_rad"), .halving = json.at("halving_rad")};
+    if (results::hash_of(json.dump()) != hash)
+      throw refuse("its contents do not match their hash: it was edited or damaged");
+    Certificate c{.id = json.at("id"),
+                  .subject = json.at("subject"),
+                  .bar = json.at("bar_rad"),
+                  .disagreement = json.at("disagreement_rad"),
+                  .halving = json.at("halving_rad")};
     for (auto const& row : json.at("states")) {
       std::array<Quad, 7> x{};
       for (std::size_t i = 0; i < x.size(); ++i)
@@ -196,9 +205,10 @@ void check_fresh(Certificate const& certificate, Reference const& reference, std
   for (std::size_t k = 0; k < certificate.times.size(); ++k) {
     double const apart = angle_between(certificate.states[k], reference.at(certificate.times[k]));
     if (apart <= room) continue;
-    throw ReferenceError(fmt::format("{}: stale: at t = {} s it is {:.1e} rad from the solution of today's problem; make "
-                                     "it anew with `polhode reference`",
-                                     file.string(), certificate.times[k], apart));
+    throw ReferenceError(
+        fmt::format("{}: stale: at t = {} s it is {:.1e} rad from the solution of today's problem; make "
+                    "it anew with `polhode reference`",
+                    file.string(), certificate.times[k], apart));
   }
 }
 

@@ -49,9 +49,9 @@ std::vector<QuadState> solve_by_gauss(ChosenProblem const& problem, Schedule con
 
 /// A reference with its proof.
 struct Certificate {
-  std::string id;      ///< hash of `subject`: problem, variant, parameters, horizon
+  std::string id;  ///< hash of `subject`: problem, variant, parameters, horizon
   std::string subject;
-  double bar = 0;      ///< [rad]
+  double bar = 0;                        ///< [rad]
   double disagreement = 0, halving = 0;  ///< its two parts [rad]
   std::vector<double> times{};           ///< where the states are stored [s]
   std::vector<QuadState> states{};

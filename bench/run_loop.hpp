@@ -17,10 +17,10 @@ struct Stop {
 
 /// What decides the stops of a run.
 struct Schedule {
-  double t_end = 0;                 ///< [s]
-  double sample_period = 0;         ///< [s]; 0 = continuous control
-  std::vector<double> jumps;        ///< announced time events [s]
-  double output_period = 0;         ///< [s]; 0 = no outputs but the end
+  double t_end = 0;           ///< [s]
+  double sample_period = 0;   ///< [s]; 0 = continuous control
+  std::vector<double> jumps;  ///< announced time events [s]
+  double output_period = 0;   ///< [s]; 0 = no outputs but the end
 };
 
 /// All stops from 0 to t_end, ascending; times that agree to 1e-9 of the horizon are one stop.
@@ -34,7 +34,7 @@ struct NoWatch {
 };
 
 /// Runs `stepper` on `problem` from the first stop to the last. watch.at_stop(stop, x) is called at each stop after its
-/// sample was taken; if Watch::each_step, watch.after_step(t, x) is called after every accepted step.
+/// sample was taken; if Watch::each_step, watch.after_step(t, x, projections) is called after every accepted step.
 /// Returns the first status that is not ok; x is then the last state that was reached.
 /// h [s] is the step of a fixed-step method, and 0 for methods that choose their own.
 template <class P, class Stepper, class M = typename P::Space, class Watch>
@@ -55,7 +55,7 @@ Status run_from_stop_to_stop(P& problem, Stepper& stepper, Point<M>& x, std::vec
     } else if constexpr (requires(double t) { stepper.step(x, t, next); }) {
       for (double t = here.time; t < next && status == Status::ok;) {
         status = stepper.step(x, t, next);
-        if (status == Status::ok) watch.after_step(t, x);
+        if (status == Status::ok) watch.after_step(t, x, stepper.projections());
       }
     } else {
       // The same steps as one advance would take, one at a time.
@@ -65,7 +65,7 @@ Status run_from_stop_to_stop(P& problem, Stepper& stepper, Point<M>& x, std::vec
         double const t_next = ahead > next - 1e-9 * h ? next : ahead;
         status = stepper.advance(x, t, t_next);
         t = t_next;
-        if (status == Status::ok) watch.after_step(t, x);
+        if (status == Status::ok) watch.after_step(t, x, stepper.projections());
       }
     }
     if (status != Status::ok) return status;

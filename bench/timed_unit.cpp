@@ -1,6 +1,6 @@
-/// The timed solves of one problem (POLHODE_PROBLEM) by one list of methods (POLHODE_METHODS), fully typed: what a user who
-/// compiled this method against this problem would run. An inertia with products of inertia runs erased instead: the
-/// field is then behind a virtual call for every method alike.
+/// The timed solves of one problem (POLHODE_PROBLEM) by one list of methods (POLHODE_METHODS), fully typed: what a user
+/// who compiled this method against this problem would run. An inertia with products of inertia is not timed: its field
+/// is compiled for erased, counted runs alone.
 #include "bench/problems.hpp"
 
 namespace polhode::bench {

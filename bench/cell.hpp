@@ -1,0 +1,73 @@
+#pragma once
+/// One cell, from words to a record: the user's words become a problem, a plan and a schedule; the run is measured.
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+
+#include "bench/measure.hpp"
+#include "bench/vocabulary.hpp"
+
+namespace polhode::bench {
+
+/// The words of both catalogues, in catalogue order.
+Vocabulary const& vocabulary();
+
+/// A cell made ready: everything checked, nothing run.
+struct PreparedCell {
+  results::Cell cell;  ///< canonical, horizon filled in
+  std::unique_ptr<ChosenProblem> problem;
+  Plan plan;
+  Schedule schedule;
+  std::string refusal;  ///< why it does not run; empty if it does
+};
+
+/// Checks words and numbers and builds the problem. every [s]: output times, 0 for none but the end.
+/// Throws UsageError: unknown words, broken parameter rules, an h that does not divide the sample period or `every`.
+PreparedCell prepare(results::Cell cell, double every = 0);
+
+/// References by subject, each made once and shared between threads.
+class References {
+ public:
+  explicit References(std::filesystem::path committed) : committed_(std::move(committed)) {}
+  std::shared_ptr<UsableReference const> of(PreparedCell const& prepared);
+
+ private:
+  struct Slot {
+    std::once_flag made;
+    std::shared_ptr<UsableReference const> reference;
+  };
+  std::filesystem::path committed_;
+  std::mutex mutex_;
+  std::map<std::string, std::shared_ptr<Slot>> slots_;
+};
+
+/// What the accuracy pass gives.
+struct Measured {
+  results::Record record;
+  results::Series drift;
+  History history;  ///< at samples and output times
+};
+
+/// Runs and measures one cell. Failures of the run are statuses, never exceptions; `build` goes into the record.
+/// timeout [s] of wall time; 0 for none.
+Measured measure(PreparedCell const& prepared, References& references, std::string const& build, double timeout);
+
+/// The record of a cell that does not run.
+results::Record refused(PreparedCell const& prepared, std::string const& build);
+
+/// A trajectory without a reference: rows at output times, and how it ended.
+struct Trajectory {
+  History history;
+  std::vector<Column> columns;  ///< t first
+  results::Status status = results::Status::ok;
+  std::string reason;
+  Outcome outcome;
+};
+Trajectory simulate(PreparedCell const& prepared, double timeout);
+
+/// Columns of a history with their units: q1 .. q4, wx wy wz, and the problem's own.
+std::vector<Column> columns_of(ChosenProblem const& problem);
+
+}  // namespace polhode::bench

@@ -1,0 +1,134 @@
+#include "bench/measure.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace polhode::bench {
+namespace {
+
+constexpr int comparisons = 1000;  // at most, over the horizon: a reference costs more than a step
+constexpr int moments_kept = 60;
+constexpr double decades_kept = 4;
+
+double angle(Vec3<Quad> const& a, Vec3<Quad> const& b) {
+  return double(atan2(length(cross(a, b)), dot(a, b)));
+}
+
+double median(std::vector<double> values) {
+  auto const middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  if (values.size() % 2 == 1) return *middle;
+  return (*middle + *std::max_element(values.begin(), middle)) / 2;
+}
+
+}  // namespace
+
+Invariants invariants_of(Mat3<Quad> const& J, Quat<Quad> const& q, Vec3<Quad> const& omega) {
+  Vec3<Quad> const L = J * omega;
+  return {dot(omega, L) / 2, length(L), to_inertial(normalised(q), L)};
+}
+
+std::optional<double> growth_exponent(std::vector<double> const& times, std::vector<double> const& drift) {
+  if (times.empty() || !(times.back() > 0)) return {};
+  constexpr int bins = 16, per_decade = 8;
+  constexpr double floor = 4 * std::numeric_limits<double>::epsilon();
+  struct Bin {
+    double log_t = 0, squares = 0;
+    int count = 0;
+  };
+  std::vector<Bin> all(bins);
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    if (!(times[i] > 0)) continue;
+    double const decades_before_end = std::log10(times.back() / times[i]);
+    int const bin = int(decades_before_end * per_decade);
+    if (bin < 0 || bin >= bins) continue;
+    all[std::size_t(bin)].log_t += std::log(times[i]);
+    all[std::size_t(bin)].squares += drift[i] * drift[i];
+    ++all[std::size_t(bin)].count;
+  }
+  std::vector<std::pair<double, double>> points;
+  for (Bin const& bin : all) {
+    if (bin.count == 0) continue;
+    double const rms = std::sqrt(bin.squares / bin.count);
+    if (rms > floor) points.emplace_back(bin.log_t / bin.count, std::log(rms));
+  }
+  if (points.size() < 5) return {};
+  std::vector<double> slopes;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      slopes.push_back((points[i].second - points[j].second) / (points[i].first - points[j].first));
+  return median(std::move(slopes));
+}
+
+Metrics::Metrics(UsableReference const& reference, BodyParameters const& body, bool torque_free, double t_end)
+    : reference_(reference), inertia_(body.matrix<Quad>()), torque_free_(torque_free), t_end_(t_end) {}
+
+void Metrics::see(Sight const& sight) {
+  bool const first = drift_times_.empty();
+  drift_times_.push_back(sight.t);
+  drifts_.push_back(sight.drift);
+  drift_max_ = std::max(drift_max_, std::fabs(sight.drift));
+  drift_final_ = sight.drift;
+  drift_squares_ += sight.drift * sight.drift;
+  raw_max_ = std::max({raw_max_, sight.raw_defect, std::fabs(sight.drift)});
+
+  Invariants const now = invariants_of(inertia_, sight.q, sight.omega);
+  if (first) start_ = now;
+  auto const relative = [](Quad a, Quad b) { return b == 0 ? double(abs_of(a)) : double(abs_of(Quad((a - b) / b))); };
+  energy_max_ = std::max(energy_max_, relative(now.energy, start_->energy));
+  momentum_max_ = std::max(momentum_max_, relative(now.momentum, start_->momentum));
+  direction_max_ = std::max(direction_max_, angle(now.direction, start_->direction));
+
+  bool const end = sight.t >= t_end_;
+  if (sight.t >= next_comparison_ || end) compare(sight);
+}
+
+void Metrics::compare(Sight const& sight) {
+  QuadState const exact = reference_.reference.at(sight.t);
+  double const error = double(angle_between(exact.q, sight.q));
+  double const rate_scale = reference_.reference.largest_rate();
+  double const rate_error = double(length(sight.omega - exact.omega)) / (rate_scale > 0 ? rate_scale : 1);
+  // Trapezoidal rule on the squares.
+  attitude_squares_ += (sight.t - last_comparison_) * (error * error + attitude_end_ * attitude_end_) / 2;
+  attitude_end_ = error;
+  rate_end_ = rate_error;
+  attitude_max_ = std::max(attitude_max_, error);
+  rate_max_ = std::max(rate_max_, rate_error);
+  last_comparison_ = sight.t;
+  double const interval = t_end_ / comparisons;
+  next_comparison_ = interval * (std::floor(sight.t / interval * (1 + 1e-12)) + 1) * (1 - 1e-12);
+
+  if (sight.t < next_moment_ && sight.t < t_end_) return;
+  if (sight.t > 0) moments_.push_back({sight.t, std::fabs(sight.drift), raw_max_, error});
+  double const ratio = std::pow(10.0, decades_kept / moments_kept);
+  next_moment_ = std::max(sight.t * ratio, t_end_ * std::pow(10.0, -decades_kept));
+}
+
+void Metrics::fill(results::Record& record) const {
+  record.norm_drift_raw_max = raw_max_;
+  record.norm_drift_max = drift_max_;
+  record.norm_drift_final = drift_final_;
+  record.norm_drift_rms = std::sqrt(drift_squares_ / double(std::max<std::size_t>(1, drifts_.size())));
+  record.norm_growth_exponent = growth_exponent(drift_times_, drifts_);
+  if (torque_free_) {
+    record.energy_drift_max = energy_max_;
+    record.momentum_drift_max = momentum_max_;
+    record.momentum_direction_max = direction_max_;
+  }
+  record.attitude_error_max = attitude_max_;
+  record.attitude_error_end = attitude_end_;
+  record.attitude_error_l2 = std::sqrt(attitude_squares_ / t_end_);
+  record.rate_error_max = rate_max_;
+  record.rate_error_end = rate_end_;
+}
+
+results::Series Metrics::drift_series(std::string const& cell) const {
+  return {.cell = cell,
+          .name = "drift",
+          .columns = {"t", "norm_drift", "norm_drift_raw", "attitude_error"},
+          .units = {"s", "", "", "rad"},
+          .rows = moments_};
+}
+
+}  // namespace polhode::bench

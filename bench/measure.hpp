@@ -1,0 +1,65 @@
+#pragma once
+/// What a run is worth: norm drift, errors against the reference, invariants. Computed in quadruple precision from the
+/// states of the run, so that the metric adds no rounding of its own.
+#include <optional>
+#include <vector>
+
+#include "bench/reference.hpp"
+#include "results/record.hpp"
+
+namespace polhode::bench {
+
+/// The state of one body at one time, widened to quadruple precision.
+struct Sight {
+  double t = 0;  ///< [s]
+  Quat<Quad> q;  ///< as the run has it, not normalised
+  Vec3<Quad> omega;
+  double drift = 0;       ///< defect of the constraint; for quaternions signed, q.q - 1
+  double raw_defect = 0;  ///< the greatest defect of a step before projection, so far
+};
+
+/// Energy and angular momentum of a rigid body with inertia matrix J [kg m^2].
+struct Invariants {
+  Quad energy;           ///< [J]
+  Quad momentum;         ///< |L| [N m s]
+  Vec3<Quad> direction;  ///< L in space [N m s]
+};
+Invariants invariants_of(Mat3<Quad> const& J, Quat<Quad> const& q, Vec3<Quad> const& omega);
+
+/// Theil-Sen slope of log(drift) on log(t) over the last two decades, from the RMS in eighths of a decade, above a
+/// floor of 4 ulp; null where fewer than five bins are left. About 1 for a systematic drift, 1/2 for a random walk, 0
+/// for noise.
+std::optional<double> growth_exponent(std::vector<double> const& times, std::vector<double> const& drift);
+
+/// Collects the metrics of one run, step by step.
+class Metrics {
+ public:
+  /// torque_free: energy and angular momentum are invariants of this problem.
+  Metrics(UsableReference const& reference, BodyParameters const& body, bool torque_free, double t_end);
+  /// At 0 s and after every accepted step, in order of time.
+  void see(Sight const& sight);
+  /// Writes what was measured into the record.
+  void fill(results::Record& record) const;
+  /// At most 64 moments, evenly on log t: t, norm_drift, norm_drift_raw (greatest so far), attitude_error.
+  results::Series drift_series(std::string const& cell) const;
+
+ private:
+  void compare(Sight const& sight);
+
+  UsableReference const& reference_;
+  Mat3<Quad> inertia_;
+  bool torque_free_;
+  double t_end_;
+  std::optional<Invariants> start_;
+
+  double drift_max_ = 0, drift_final_ = 0, drift_squares_ = 0, raw_max_ = 0;
+  std::vector<double> drift_times_, drifts_;
+  double energy_max_ = 0, momentum_max_ = 0, direction_max_ = 0;
+
+  double next_comparison_ = 0, last_comparison_ = 0;
+  double attitude_max_ = 0, attitude_end_ = 0, attitude_squares_ = 0, rate_max_ = 0, rate_end_ = 0;
+  std::vector<std::vector<double>> moments_;
+  double next_moment_ = 0;
+};
+
+}  // namespace polhode::bench

@@ -1,0 +1,71 @@
+/// The vocabulary, made from the two catalogues.
+#include <algorithm>
+
+#include "bench/cell.hpp"
+
+namespace polhode::bench {
+namespace {
+
+constexpr std::array family_names{"explicit_rk", "gauss", "lie_group", "rigid_body",
+                                  "splitting",   "exact", "taylor",    "library"};
+constexpr std::array needs_names{"none", "flat", "group", "free_body"};
+struct PreservesName {
+  Preserves flag;
+  char const* name;
+};
+constexpr std::array preserves_names{
+    PreservesName{keeps_norm, "norm"},          PreservesName{keeps_energy, "energy"},
+    PreservesName{keeps_momentum, "momentum"},  PreservesName{keeps_momentum_direction, "momentum_direction"},
+    PreservesName{is_symplectic, "symplectic"}, PreservesName{is_symmetric, "symmetric"}};
+
+ProblemWord problem_word(ProblemEntry const& entry) {
+  ProblemInfo const& info = entry.info();
+  ProblemWord word{.name = info.name,
+                   .summary = info.summary,
+                   .source = info.source,
+                   .variants = info.variants,
+                   .formulations = {},
+                   .parameters = {},
+                   .events = info.events,
+                   .claims = {}};
+  for (std::string_view name : formulation_names()) word.formulations.emplace_back(name);
+  for (Parameter const& parameter : entry.parameters())
+    word.parameters.push_back({parameter.name(), parameter.unit(), parameter.values()});
+  for (ClaimInfo const& claim : info.claims) word.claims.push_back(claim.name);
+  return word;
+}
+
+template <Space M>
+IntegratorWord integrator_word(MethodOn<M> const& method) {
+  MethodInfo const& info = *method.info;
+  IntegratorWord word;
+  word.name = info.name;
+  word.family = family_names.at(std::size_t(info.family));
+  if (info.order > 0) word.order = info.order;
+  word.fixed = method.fixed;
+  word.adaptive = method.adaptive;
+  word.rival = info.rival;
+  for (PreservesName const& entry : preserves_names)
+    if (info.preserves & entry.flag) word.preserves.emplace_back(entry.name);
+  word.needs = needs_names.at(std::size_t(info.needs));
+  word.source = info.source;
+  word.pitfall = info.pitfall;
+  word.not_built = info.not_built;
+  return word;
+}
+
+}  // namespace
+
+Vocabulary const& vocabulary() {
+  static Vocabulary const words = [] {
+    Vocabulary made;
+    for (ProblemEntry const* entry : all_problems()) made.problems.push_back(problem_word(*entry));
+    for (auto const& method : all_methods_on<RigidBody<FlatQuaternion<double>>>())
+      made.integrators.push_back(integrator_word(method));
+    for (PolicyName const& entry : policy_names) made.policies.emplace_back(entry.name);
+    return made;
+  }();
+  return words;
+}
+
+}  // namespace polhode::bench
