@@ -115,6 +115,8 @@ struct UnitQuaternion {
 template <class S>
 struct FlatQuaternion : Flat<S, Quat<S>>, UnitQuaternion<S> {
   static constexpr std::string_view name = "quaternion";
+  template <class T>
+  using Over = FlatQuaternion<T>;  ///< the same space over another scalar
   using Velocity = Vec3<S>;
   static POLHODE_INLINE Quat<S> rate(Quat<S> const& q, Velocity const& omega) { return quaternion_rate(q, omega); }
   static POLHODE_INLINE Quat<S> chart_rate(Quat<S> const&, Quat<S> const& u, Velocity const& omega) {
@@ -139,6 +141,8 @@ struct Rotations {
 template <class S>
 struct S3 : Rotations<S, Quat<S>>, UnitQuaternion<S> {
   static constexpr std::string_view name = "s3";
+  template <class T>
+  using Over = S3<T>;  ///< the same space over another scalar
   static POLHODE_INLINE Quat<S> retract(Quat<S> const& q, Vec3<S> const& u) { return q * exp_quaternion(u); }
   static Vec3<S> local(Quat<S> const& q, Quat<S> const& y) { return log_quaternion(conj(q) * y); }
   /// A product of rotations has no rounding error that the next step could add: the carry stays 0.
@@ -151,6 +155,8 @@ struct S3 : Rotations<S, Quat<S>>, UnitQuaternion<S> {
 template <class S>
 struct SO3 : Rotations<S, Mat3<S>> {
   static constexpr std::string_view name = "so3";
+  template <class T>
+  using Over = SO3<T>;  ///< the same space over another scalar
   static constexpr bool constrained = true;
   static POLHODE_INLINE Mat3<S> retract(Mat3<S> const& m, Vec3<S> const& u) { return m * matrix(exp_quaternion(u)); }
   static Vec3<S> local(Mat3<S> const& m, Mat3<S> const& y) {
