@@ -175,6 +175,18 @@ std::set<std::string> words_of(std::string const& variant) {
   return words;
 }
 
+/// A variant text without some of its words.
+std::string without(std::string const& variant, std::vector<std::string> const& dropped) {
+  std::string kept;
+  for (std::size_t from = 0; from < variant.size();) {
+    std::size_t const to = std::min(variant.find(',', from), variant.size());
+    std::string const word = variant.substr(from, to - from);
+    if (std::find(dropped.begin(), dropped.end(), word) == dropped.end()) kept += (kept.empty() ? "" : ",") + word;
+    from = to + 1;
+  }
+  return kept;
+}
+
 }  // namespace
 
 std::vector<Column> columns_of(ChosenProblem const& problem) {
@@ -215,6 +227,8 @@ PreparedCell prepare(results::Cell cell, double every) {
     prepared.plan.control = FixedStep{*cell.h};
   else
     prepared.plan.control = Adaptive{*cell.rtol, *cell.atol};
+  prepared.physics = cell;
+  prepared.physics.variant = without(cell.variant, prepared.problem->info().driven);
   prepared.cell = std::move(cell);
   prepared.refusal = refusal_of(prepared);
   return prepared;
@@ -224,12 +238,18 @@ std::shared_ptr<UsableReference const> References::of(PreparedCell const& prepar
   std::shared_ptr<Slot> slot;
   {
     std::lock_guard const lock(mutex_);
-    auto& found = slots_[reference_subject(prepared.cell)];
+    auto& found = slots_[reference_subject(prepared.physics)];
     if (!found) found = std::make_shared<Slot>();
     slot = found;
   }
-  std::call_once(slot->made,
-                 [&] { slot->reference = obtain(prepared.cell, *prepared.problem, prepared.schedule, committed_); });
+  std::call_once(slot->made, [&] {
+    Choice const choice{.words = words_of(prepared.physics.variant), .set = prepared.physics.set};
+    auto const problem = problem_named(prepared.physics.problem).choose(choice);
+    Schedule schedule = prepared.schedule;
+    schedule.sample_period = problem->sample_period();
+    schedule.output_period = 0;
+    slot->reference = obtain(prepared.physics, *problem, schedule, committed_);
+  });
   return slot->reference;
 }
 
@@ -275,8 +295,10 @@ Measured measure(PreparedCell const& prepared, References& references, std::stri
       record.status = results::Status::inaccurate;
       record.reason = fmt::format("attitude error {:.2g} rad: no digit is right", *record.attitude_error_max);
     }
-    for (ClaimResult const& claim : prepared.problem->claims(trajectory.history))
-      record.claims[claim.name] = {claim.value, claim.published, claim.holds ? "reproduced" : "not reproduced"};
+    for (ClaimResult const& claim : prepared.problem->claims(trajectory.history)) {
+      std::string const verdict = !claim.holds ? "no printed value" : *claim.holds ? "reproduced" : "not reproduced";
+      record.claims[claim.name] = {claim.value, claim.published, verdict};
+    }
   }
   measured.drift = metrics.drift_series(record.cell);
   measured.history = std::move(trajectory.history);

@@ -16,7 +16,8 @@ Vocabulary const& vocabulary();
 
 /// A cell made ready: everything checked, nothing run.
 struct PreparedCell {
-  results::Cell cell;  ///< canonical, horizon filled in
+  results::Cell cell;     ///< canonical, horizon filled in
+  results::Cell physics;  ///< what it is held against: the cell without words that only drive the run
   std::unique_ptr<ChosenProblem> problem;
   Plan plan;
   Schedule schedule;

@@ -27,6 +27,8 @@ ProblemEntry const& problem_named(std::string_view name) {
   throw std::out_of_range("no problem " + std::string(name));
 }
 
-std::vector<std::string_view> formulation_names() { return names(Formulations{}); }
+std::vector<std::string_view> formulation_names() {
+  return names(Formulations{});
+}
 
 }  // namespace polhode::bench

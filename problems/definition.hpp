@@ -25,7 +25,7 @@ struct ClaimInfo {
 struct ClaimResult {
   std::string name;
   std::optional<double> value, published;
-  bool holds = false;
+  std::optional<bool> holds;  ///< null: nothing is printed to hold it against
 };
 
 /// The facts of a problem that do not depend on the user's choice.
@@ -36,6 +36,7 @@ struct ProblemInfo {
   std::vector<std::vector<std::string>> variants;  ///< groups that exclude each other; the first is the default
   std::vector<std::string> events;                 ///< what a method would have to locate or land on
   std::vector<ClaimInfo> claims;
+  std::vector<std::string> driven{};  ///< variant words that change how a run is driven, not what it is held against
 };
 
 /// Columns against time, as `simulate` prints them: rows[i] belongs to times[i].

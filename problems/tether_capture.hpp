@@ -40,7 +40,9 @@ class TetherCapture {
                    {"omega_y_zero", "omega_y first reaches zero", {}, "s"},
                    {"alpha_end", "the target points along the tether within 50 s (below 1 deg)", {}, "rad"},
                    {"alpha_maxima", "number of interior maxima of the angle: one rise, or waves", {}, ""},
-                   {"energy_c", "thruster effort: the integral of M_u.M_u", {}, "N^2 m^2 s"}}};
+                   {"energy_c", "thruster effort: the integral of M_u.M_u", {}, "N^2 m^2 s"}},
+        // The paper's own way, and a trap: refining the step changes the problem, and the error does not vanish.
+        .driven = {"coupled"}};
     return facts;
   }
   std::vector<Parameter> parameters() {
@@ -140,12 +142,12 @@ inline std::vector<ClaimResult> TetherCapture::claims(History const& history) co
     std::optional<double> const zero = tether_claims::first_zero(history.times, history.column("wy"));
     results.push_back({"omega_y_zero", zero, 5.0, zero && std::fabs(*zero - 5.0) <= 1.0});
   } else {
-    results.push_back({"alpha_max", greatest, {}, true});
+    results.push_back({"alpha_max", greatest, {}, {}});
   }
   results.push_back({"alpha_end", last, {}, last < 1 * degree});
   bool const wavy = law_.actuators == TetherCase::switched;
   results.push_back({"alpha_maxima", double(waves), {}, wavy ? waves >= 2 : waves <= 1});
-  results.push_back({"energy_c", history.column("energy_c").back(), {}, true});
+  results.push_back({"energy_c", history.column("energy_c").back(), {}, {}});
   return results;
 }
 

@@ -103,7 +103,7 @@ Judgement judge(Facts const& facts, CaseRuns const& cases) {
     if (found == cases.of.end()) continue;
     j.energy[i] = energy_of(facts, *found->second);
     for (auto const& [claim, result] : found->second->claims) {
-      if (result.verdict != reproduced) j.missed.push_back(fmt::format("{} {}", name, claim));
+      if (result.verdict == "not reproduced") j.missed.push_back(fmt::format("{} {}", name, claim));
     }
   }
   if (j.energy[0] && j.energy[1] && j.energy[2]) j.ordered = *j.energy[1] < *j.energy[0] && *j.energy[0] < *j.energy[2];

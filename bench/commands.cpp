@@ -1,0 +1,341 @@
+#include "bench/commands.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <charconv>
+#include <cstdio>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "bench/cell.hpp"
+#include "results/store.hpp"
+
+namespace polhode::bench {
+namespace {
+
+// ---- list -----------------------------------------------------------------------------------------------------------
+
+nlohmann::ordered_json to_json(IntegratorWord const& word) {
+  nlohmann::ordered_json json{{"name", word.name}, {"family", word.family}};
+  json["order"] = word.order && word.fixed ? nlohmann::ordered_json(*word.order) : nlohmann::ordered_json();
+  json["adaptive_only"] = word.adaptive && !word.fixed;
+  json["rival"] = word.rival;
+  json["preserves"] = word.preserves;
+  json["needs"] = word.needs;
+  json["source"] = word.source;
+  json["pitfall"] = word.pitfall;
+  if (!word.not_built.empty()) json["not_built"] = word.not_built;
+  return json;
+}
+
+nlohmann::ordered_json to_json(ProblemWord const& word) {
+  nlohmann::ordered_json json{{"name", word.name},
+                              {"variants", word.variants},
+                              {"formulations", word.formulations},
+                              {"parameters", nlohmann::ordered_json::array()},
+                              {"events", word.events},
+                              {"claims", word.claims},
+                              {"summary", word.summary},
+                              {"source", word.source}};
+  for (ParameterWord const& parameter : word.parameters) {
+    nlohmann::ordered_json value = parameter.value;
+    if (parameter.value.size() == 1) value = parameter.value[0];
+    json["parameters"].push_back({{"name", parameter.name}, {"unit", parameter.unit}, {"default", value}});
+  }
+  return json;
+}
+
+std::vector<std::string> suite_names() {
+  std::vector<std::string> names;
+  if (!std::filesystem::is_directory(suites_folder())) return names;
+  for (auto const& entry : std::filesystem::directory_iterator(suites_folder()))
+    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string variants_text(ProblemWord const& word) {
+  std::vector<std::string> groups;
+  for (auto const& group : word.variants) {
+    std::string text;
+    for (std::string const& choice : group)
+      if (!choice.empty()) text += (text.empty() ? "" : "|") + choice;
+    groups.push_back(group.front().empty() ? "[" + text + "]" : text);
+  }
+  return groups.empty() ? "-" : fmt::format("{}", fmt::join(groups, " "));
+}
+
+void list_integrators(bool as_json) {
+  auto const& words = vocabulary().integrators;
+  if (as_json) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::array();
+    for (IntegratorWord const& word : words) json.push_back(to_json(word));
+    fmt::print("{}\n", json.dump(1));
+    return;
+  }
+  fmt::print("{:<16} {:<12} {:>5}  {:<8} {:<6} {:<34} {}\n", "name", "family", "order", "steps", "needs", "keeps",
+             "source");
+  for (IntegratorWord const& word : words) {
+    char const* steps = word.fixed && word.adaptive ? "both" : word.fixed ? "fixed" : "adaptive";
+    fmt::print("{:<16} {:<12} {:>5}  {:<8} {:<6} {:<34} {}{}\n", word.name, word.family,
+               word.order ? std::to_string(*word.order) : "-", steps, word.needs,
+               word.preserves.empty() ? "-" : fmt::format("{}", fmt::join(word.preserves, ",")), word.source,
+               word.not_built.empty() ? "" : "  (" + word.not_built + ")");
+  }
+}
+
+void list_problems(bool as_json) {
+  auto const& words = vocabulary().problems;
+  if (as_json) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::array();
+    for (ProblemWord const& word : words) json.push_back(to_json(word));
+    fmt::print("{}\n", json.dump(1));
+    return;
+  }
+  for (ProblemWord const& word : words) {
+    fmt::print("{}: {}\n  variants:     {}\n  formulations: {}\n  source:       {}\n  parameters:\n", word.name,
+               word.summary, variants_text(word), fmt::join(word.formulations, " "), word.source);
+    for (ParameterWord const& p : word.parameters)
+      fmt::print("    {:<14} {:g} {}\n", p.name, fmt::join(p.value, ","), p.unit);
+  }
+}
+
+void list_names(std::vector<std::string> const& names, bool as_json) {
+  if (as_json)
+    fmt::print("{}\n", nlohmann::ordered_json(names).dump(1));
+  else
+    for (std::string const& name : names) fmt::print("{}\n", name);
+}
+
+void list(std::string const& what, bool as_json) {
+  if (what == "integrators") return list_integrators(as_json);
+  if (what == "problems") return list_problems(as_json);
+  if (what == "policies") return list_names(vocabulary().policies, as_json);
+  if (what == "suites") return list_names(suite_names(), as_json);
+  if (what == "formulations") {
+    auto const names = formulation_names();
+    return list_names({names.begin(), names.end()}, as_json);
+  }
+  throw UsageError(unknown("list", what, {"problems", "formulations", "integrators", "policies", "suites"}));
+}
+
+void add_list(CLI::App& app) {
+  auto const what = std::make_shared<std::string>();
+  auto const as_json = std::make_shared<bool>(false);
+  CLI::App* verb =
+      app.add_subcommand("list", "Say what there is: problems, formulations, integrators, policies, suites");
+  verb->add_option("WHAT", *what, "problems, formulations, integrators, policies or suites")->required();
+  verb->add_flag("--json", *as_json, "As JSON");
+  verb->callback([=] { list(*what, *as_json); });
+}
+
+// ---- cells from the command line ------------------------------------------------------------------------------------
+
+/// The flags that name one cell.
+struct CellFlags {
+  results::Cell cell;
+  std::vector<std::string> settings;
+  double h = 0, rtol = 0, atol = 0, t_end = 0;
+  CLI::Option *has_h = nullptr, *has_rtol = nullptr, *has_atol = nullptr, *has_t_end = nullptr;
+
+  void add_physics(CLI::App& verb) {
+    verb.add_option("PROBLEM", cell.problem, "Problem; see `polhode list problems`")->required();
+    verb.add_option("--variant", cell.variant, "Variant words, joined by commas");
+    has_t_end = verb.add_option("--t-end", t_end, "Horizon [s]; default the problem's own");
+    verb.add_option("--set", settings, "Change a parameter: NAME=NUMBER[,NUMBER...]; repeatable")
+        ->type_name("NAME=VALUE");
+  }
+  void add_method(CLI::App& verb) {
+    verb.add_option("--formulation", cell.formulation, "Attitude description: quaternion, s3, so3")
+        ->default_str("quaternion");
+    verb.add_option("--integrator", cell.integrator, "Integrator; see `polhode list integrators`")->required();
+    verb.add_option("--policy", cell.policy, "Norm policy: none, project")->default_str("none");
+    has_h = verb.add_option("--h", h, "Step size [s]; divides the sample period");
+    has_rtol = verb.add_option("--rtol", rtol, "Relative tolerance, instead of --h");
+    has_atol = verb.add_option("--atol", atol, "Absolute tolerance; default rtol / 100");
+  }
+  /// The cell that the flags name. Throws UsageError.
+  results::Cell chosen() const {
+    results::Cell chosen = cell;
+    if (chosen.formulation.empty()) chosen.formulation = "quaternion";
+    for (std::string const& text : settings)
+      chosen.set.insert_or_assign(parse_setting(text).first, parse_setting(text).second);
+    if (has_h && has_h->count() > 0) chosen.h = h;
+    if (has_rtol && has_rtol->count() > 0) chosen.rtol = rtol;
+    if (has_atol && has_atol->count() > 0) chosen.atol = atol;
+    if (has_t_end->count() > 0) {
+      check_positive("t_end", t_end);
+      chosen.t_end = t_end;
+    }
+    return chosen;
+  }
+};
+
+// ---- simulate -------------------------------------------------------------------------------------------------------
+
+std::string csv_of(PreparedCell const& prepared, Trajectory const& trajectory) {
+  results::Cell const& cell = prepared.cell;
+  std::string text = fmt::format(
+      "# polhode {} {}\n# problem {} {}\n# {} on {}, policy {}, {}\n", version(), build_id(), cell.problem,
+      cell.variant, cell.integrator, cell.formulation, cell.policy,
+      cell.h ? fmt::format("h = {:.17g} s", *cell.h) : fmt::format("rtol = {:g}, atol = {:g}", *cell.rtol, *cell.atol));
+  for (auto const& [name, values] : cell.set) text += fmt::format("# {} = {:.17g}\n", name, fmt::join(values, ","));
+  text += fmt::format("# steps {}, rejected {}, evaluations {}\n# status {}{}\n", trajectory.outcome.work.steps,
+                      trajectory.outcome.work.rejected, trajectory.outcome.evaluations,
+                      results::name_of(trajectory.status), trajectory.reason.empty() ? "" : ": " + trajectory.reason);
+  text += "# units: t [s]";
+  for (Column const& column : trajectory.columns)
+    if (!column.unit.empty()) text += fmt::format(", {} [{}]", column.name, column.unit);
+  text += "\nt";
+  for (Column const& column : trajectory.columns) text += "," + column.name;
+  text += '\n';
+  for (std::size_t i = 0; i < trajectory.history.times.size(); ++i)
+    text += fmt::format("{:.17g},{:.17g}\n", trajectory.history.times[i], fmt::join(trajectory.history.rows[i], ","));
+  return text;
+}
+
+void write_text(std::string const& file, std::string const& text) {
+  if (file.empty()) {
+    std::fwrite(text.data(), 1, text.size(), stdout);
+    return;
+  }
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  if (!out.flush()) throw results::StoreError(fmt::format("{}: cannot be written: {}", file, std::strerror(errno)));
+}
+
+/// Samples and output times may differ: only rows at multiples of `every` are wanted.
+void keep_outputs(Trajectory& trajectory, std::vector<Stop> const& stops) {
+  History kept;
+  for (std::size_t i = 0, k = 0; i < trajectory.history.times.size(); ++i) {
+    while (stops[k].time < trajectory.history.times[i]) ++k;
+    if (!stops[k].output) continue;
+    kept.times.push_back(trajectory.history.times[i]);
+    kept.rows.push_back(std::move(trajectory.history.rows[i]));
+  }
+  trajectory.history.times = std::move(kept.times);
+  trajectory.history.rows = std::move(kept.rows);
+}
+
+int run_simulation(CellFlags const& flags, double every, std::string const& out) {
+  constexpr int run_failed = 4;
+  results::Cell cell = flags.chosen();
+  PreparedCell prepared = prepare(cell);
+  if (!(every > 0)) {
+    double const period = prepared.problem->sample_period();
+    every = period > 0 ? period : prepared.cell.t_end / 100;
+  }
+  prepared = prepare(cell, every);
+  if (!prepared.refusal.empty())
+    throw UsageError(
+        fmt::format("{} on {}: {}", prepared.cell.integrator, prepared.cell.formulation, prepared.refusal));
+  Trajectory trajectory = simulate(prepared, 0);
+  keep_outputs(trajectory, prepared.plan.stops);
+  write_text(out, csv_of(prepared, trajectory));
+  if (trajectory.status == results::Status::ok) return 0;
+  std::fputs(fmt::format("polhode: {} on {}: {}\n", prepared.cell.integrator, prepared.cell.problem, trajectory.reason)
+                 .c_str(),
+             stderr);
+  return run_failed;
+}
+
+void add_simulate(CLI::App& app, int& code) {
+  auto const flags = std::make_shared<CellFlags>();
+  auto const every = std::make_shared<double>(0);
+  auto const out = std::make_shared<std::string>();
+  CLI::App* verb = app.add_subcommand("simulate", "Run one problem with one integrator; the trajectory as CSV");
+  flags->add_physics(*verb);
+  flags->add_method(*verb);
+  CLI::Option* has_every =
+      verb->add_option("--every", *every, "Output interval [s]; default the sample period, else t_end / 100");
+  verb->add_option("--out", *out, "File instead of standard output")->type_name("FILE");
+  verb->callback([=, &code] {
+    if (has_every->count() > 0) check_positive("every", *every);
+    code = run_simulation(*flags, *every, *out);
+  });
+}
+
+// ---- run ------------------------------------------------------------------------------------------------------------
+
+void add_run(CLI::App& app, int& code) {
+  auto const options = std::make_shared<RunOptions>();
+  auto const name = std::make_shared<std::string>("default");
+  auto const out = std::make_shared<std::string>();
+  CLI::App* verb = app.add_subcommand("run", "Run a suite; finished cells of the same build are not run again");
+  verb->add_option("SUITE", *name, "Built-in suite or TOML file")->capture_default_str();
+  verb->add_option("--out", *out, "Result folder; default polhode-results/SUITE")->type_name("DIR");
+  verb->add_option("--filter", options->filter,
+                   "Regular expression over problem/variant/formulation/integrator/policy");
+  verb->add_flag("--fresh", options->fresh, "Forget what the folder holds");
+  verb->add_flag("--retry-failed", options->retry_failed, "Run again what failed");
+  verb->add_flag("--dry-run", options->dry_run, "Say what would run");
+  verb->add_option("--timeout", options->timeout, "Limit per cell [s]; 0 for none")->capture_default_str();
+  verb->add_option("--threads", options->threads, "Of the accuracy pass; default one per processor");
+  verb->callback([=, &code] {
+    options->out = *out;
+    Suite const suite = read_suite(suite_file(*name), vocabulary());
+    interruptible();
+    RunSummary const summary = run_suite(suite, *options);
+    if (options->dry_run) return;
+    fmt::print("{}: {} cells: {} ok, {} refused, {} failed, {} already done\n", summary.out.string(), summary.cells,
+               summary.ok, summary.refused, summary.failed, summary.skipped);
+    constexpr int interrupted = 130;
+    if (summary.interrupted) {
+      std::fputs("polhode: interrupted; the same command goes on from here\n", stderr);
+      code = interrupted;
+    }
+  });
+}
+
+// ---- reference ------------------------------------------------------------------------------------------------------
+
+void add_reference(CLI::App& app) {
+  auto const flags = std::make_shared<CellFlags>();
+  auto const out = std::make_shared<std::string>();
+  CLI::App* verb = app.add_subcommand("reference", "Compute and certify a reference in quadruple precision");
+  flags->add_physics(*verb);
+  verb->add_option("--out", *out, "Folder; default the committed references")->type_name("DIR");
+  verb->callback([=] {
+    results::Cell cell = flags->chosen();
+    cell.integrator = "dopri5";  // any method serves: only the physics is used
+    cell.formulation = "quaternion";
+    cell.rtol = 1e-6;
+    PreparedCell const prepared = prepare(cell);
+    Reference const reference = Reference::solve(*prepared.problem, prepared.schedule);
+    Certificate const certificate = certify(prepared.physics, *prepared.problem, prepared.schedule, reference);
+    std::filesystem::path const folder = out->empty() ? references_folder() : std::filesystem::path(*out);
+    save(certificate, folder);
+    fmt::print("{}  bar {:.1e} rad  (Taylor against Gauss {:.1e}, Gauss against half its step {:.1e})  {}\n",
+               certificate.id, certificate.bar, certificate.disagreement, certificate.halving, certificate.subject);
+  });
+}
+
+}  // namespace
+
+std::pair<std::string, std::vector<double>> parse_setting(std::string const& text) {
+  auto const equals = text.find('=');
+  if (equals == std::string::npos || equals == 0)
+    throw UsageError(fmt::format("--set {}: write NAME=NUMBER[,NUMBER...]", quote(text)));
+  std::vector<double> values;
+  for (std::size_t from = equals + 1; from <= text.size();) {
+    std::size_t const to = std::min(text.find(',', from), text.size());
+    double value = 0;
+    auto const [end, error] = std::from_chars(text.data() + from, text.data() + to, value);
+    if (error != std::errc() || end != text.data() + to)
+      throw UsageError(fmt::format("--set {}: {} is not a number", quote(text), quote(text.substr(from, to - from))));
+    values.push_back(value);
+    from = to + 1;
+  }
+  return {text.substr(0, equals), values};
+}
+
+void add_commands(CLI::App& app, int& code) {
+  add_list(app);
+  add_run(app, code);
+  add_simulate(app, code);
+  add_reference(app);
+}
+
+}  // namespace polhode::bench

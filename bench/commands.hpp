@@ -1,0 +1,17 @@
+#pragma once
+/// The verbs of the command line that need the harness: list, run, simulate, reference.
+#include <CLI/App.hpp>
+
+#include "bench/provenance.hpp"
+#include "bench/run.hpp"
+#include "bench/vocabulary.hpp"
+
+namespace polhode::bench {
+
+/// Adds the verbs to `app`. A verb that ran writes its exit code; mistakes are thrown.
+void add_commands(CLI::App& app, int& code);
+
+/// Parses "inertia=0.5,0.85,1". Throws UsageError.
+std::pair<std::string, std::vector<double>> parse_setting(std::string const& text);
+
+}  // namespace polhode::bench

@@ -1,0 +1,134 @@
+#include "bench/provenance.hpp"
+
+#include <benchmark/benchmark.h>
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <sched.h>
+#include <sys/utsname.h>
+
+#include <Eigen/Core>
+#include <boost/version.hpp>
+#include <cstdlib>
+#include <ctime>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "build_info.hpp"  // written by the build: version, commit, flags
+
+#ifdef POLHODE_HAS_SUNDIALS
+#include <sundials/sundials_version.h>
+#endif
+#ifdef POLHODE_HAS_GSL
+#include <gsl/gsl_version.h>
+#endif
+
+namespace polhode::bench {
+namespace {
+
+std::string contents(std::filesystem::path const& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+std::string first_line(std::filesystem::path const& file) {
+  std::ifstream in(file);
+  std::string line;
+  std::getline(in, line);
+  return line;
+}
+/// The value of "key : value" in /proc/cpuinfo.
+std::string cpu_field(std::string const& key) {
+  std::ifstream in("/proc/cpuinfo");
+  for (std::string line; std::getline(in, line);) {
+    if (line.rfind(key, 0) != 0) continue;
+    auto const colon = line.find(':');
+    if (colon != std::string::npos && colon + 2 <= line.size()) return line.substr(colon + 2);
+  }
+  return {};
+}
+
+std::string libraries() {
+  std::string list =
+      fmt::format("eigen {}.{}.{}, boost {}.{}, fmt {}.{}.{}, nlohmann_json {}.{}.{}", EIGEN_WORLD_VERSION,
+                  EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION, BOOST_VERSION / 100000, BOOST_VERSION / 100 % 1000,
+                  FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100, NLOHMANN_JSON_VERSION_MAJOR,
+                  NLOHMANN_JSON_VERSION_MINOR, NLOHMANN_JSON_VERSION_PATCH);
+#ifdef POLHODE_HAS_SUNDIALS
+  std::array<char, 64> sundials{};
+  SUNDIALSGetVersion(sundials.data(), int(sundials.size()));
+  list += fmt::format(", sundials {}", sundials.data());
+#endif
+#ifdef POLHODE_HAS_GSL
+  list += fmt::format(", gsl {}", GSL_VERSION);
+#endif
+  return list;
+}
+
+std::filesystem::path executable() {
+  return std::filesystem::read_symlink("/proc/self/exe");
+}
+
+std::filesystem::path data_folder(char const* inside_share, char const* inside_source) {
+  if (char const* chosen = std::getenv("POLHODE_DATA")) return std::filesystem::path(chosen) / inside_share;
+  auto const installed = executable().parent_path().parent_path() / "share" / "polhode" / inside_share;
+  if (std::filesystem::is_directory(installed)) return installed;
+  return std::filesystem::path(build_info::source_folder) / inside_source;
+}
+
+}  // namespace
+
+std::string version() {
+  return build_info::version;
+}
+
+std::string version_text() {
+  std::string text = fmt::format("polhode {} ({}{})\n{}\n{}\n", build_info::version, build_info::commit,
+                                 build_info::dirty ? ", modified" : "", build_info::compiler, libraries());
+#ifdef POLHODE_HAS_GSL
+  text += "Licence: MIT for Polhode's own code; this binary links GSL and is therefore under GPL-3-or-later.\n";
+#else
+  text += "Licence: MIT; this binary links no GPL code.\n";
+#endif
+  return text;
+}
+
+std::string const& build_id() {
+  static std::string const id = results::hash_of(contents("/proc/self/exe"));
+  return id;
+}
+
+results::Meta provenance() {
+  results::Meta meta{{"version", build_info::version},
+                     {"build", build_id()},
+                     {"git_commit", build_info::commit},
+                     {"git_dirty", build_info::dirty ? "true" : "false"},
+                     {"compiler", build_info::compiler},
+                     {"flags", build_info::flags},
+                     {"fp_contract", "off"},
+                     {"libraries", libraries()},
+                     {"utc", fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)))}};
+  auto const note = [&](std::string const& key, std::string const& value) {
+    if (!value.empty()) meta[key] = value;
+  };
+  note("cpu_model", cpu_field("model name"));
+  note("cpu_cache", cpu_field("cache size"));
+  note("cpu_governor", first_line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor"));
+  note("load", first_line("/proc/loadavg"));
+  note("virtualised", cpu_field("flags").find(" hypervisor") != std::string::npos ? "true" : "false");
+  cpu_set_t cpus;
+  if (sched_getaffinity(0, sizeof cpus, &cpus) == 0) note("cpus_available", std::to_string(CPU_COUNT(&cpus)));
+  utsname system{};
+  if (uname(&system) == 0) note("kernel", fmt::format("{} {} {}", system.sysname, system.release, system.machine));
+  return meta;
+}
+
+std::filesystem::path suites_folder() {
+  return data_folder("suites", "bench/suites");
+}
+std::filesystem::path references_folder() {
+  return data_folder("reference", "results/reference");
+}
+
+}  // namespace polhode::bench

@@ -1,0 +1,23 @@
+#pragma once
+/// Where a number comes from: binary, compiler, libraries, machine. Goes into the meta record of every file.
+#include <filesystem>
+#include <string>
+
+#include "results/record.hpp"
+
+namespace polhode::bench {
+
+/// The version of this program.
+std::string version();
+/// What `--version` prints: version, commit, compiler, libraries, and what their licences mean for this binary.
+std::string version_text();
+/// Identifies this very binary: the hash of the executable. Records of another build are never taken for its own.
+std::string const& build_id();
+/// Everything known about this process and machine; what the machine does not tell is absent.
+results::Meta provenance();
+/// The folder of suites and references: $POLHODE_DATA, else share/polhode beside the installed binary, else the source
+/// tree.
+std::filesystem::path suites_folder();
+std::filesystem::path references_folder();
+
+}  // namespace polhode::bench

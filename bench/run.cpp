@@ -1,0 +1,261 @@
+#include "bench/run.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <thread>
+
+#include "bench/cell.hpp"
+#include "bench/progress.hpp"
+#include "bench/provenance.hpp"
+#include "bench/timing.hpp"
+#include "results/store.hpp"
+
+namespace polhode::bench {
+namespace {
+
+std::atomic<bool> interrupted = false;
+
+struct Task {
+  PreparedCell prepared;
+  std::string id;
+  bool keep_history = false;
+  Measured measured;
+};
+
+std::string path_of(results::Cell const& cell) {
+  return fmt::format("{}/{}/{}/{}/{}", cell.problem, cell.variant, cell.formulation, cell.integrator, cell.policy);
+}
+
+std::vector<Task> prepare_all(Suite const& suite, std::string const& filter) {
+  std::regex pattern;
+  try {
+    pattern = std::regex(filter);
+  } catch (std::regex_error const& error) {
+    throw UsageError(fmt::format("--filter {}: not a regular expression: {}", quote(filter), error.what()));
+  }
+  std::vector<Task> tasks;
+  std::set<std::string> seen;
+  for (SuiteCell const& wanted : suite.cells) {
+    if (!filter.empty() && !std::regex_search(path_of(wanted.cell), pattern)) continue;
+    Task task;
+    try {
+      task.prepared = prepare(wanted.cell);
+    } catch (UsageError const& error) {
+      throw SuiteError(fmt::format("suite '{}': {}", suite.name, error.what()));
+    }
+    task.id = results::cell_id(task.prepared.cell);
+    task.keep_history = std::find(wanted.tags.begin(), wanted.tags.end(), "history") != wanted.tags.end();
+    // A cell with the horizon written out and one that takes the default are the same.
+    if (seen.insert(task.id).second) tasks.push_back(std::move(task));
+  }
+  if (tasks.empty())
+    throw NothingSelected(filter.empty()
+                              ? fmt::format("suite '{}' has no cells", suite.name)
+                              : fmt::format("--filter {} matches no cell of suite '{}'", quote(filter), suite.name));
+  return tasks;
+}
+
+/// Drops the cells that the folder already holds from this build.
+std::size_t skip_finished(std::vector<Task>& tasks, std::filesystem::path const& out, bool retry_failed) {
+  results::Contents const contents = results::read(out);
+  std::set<std::string> done;
+  for (results::Record const& record : contents.records) {
+    bool const good = record.status == results::Status::ok || record.status == results::Status::refused;
+    if (record.build == build_id() && (good || !retry_failed)) done.insert(record.cell);
+  }
+  return std::erase_if(tasks, [&](Task const& task) { return done.contains(task.id); });
+}
+
+/// Thins a history to about 500 rows and puts the time in front.
+results::Series history_series(Task const& task) {
+  History const& history = task.measured.history;
+  results::Series series{.cell = task.id, .name = "history", .columns = {"t"}, .units = {"s"}, .rows = {}};
+  for (Column const& column : columns_of(*task.prepared.problem)) {
+    series.columns.push_back(column.name);
+    series.units.push_back(column.unit);
+  }
+  std::size_t const stride = std::max<std::size_t>(1, history.times.size() / 500);
+  for (std::size_t i = 0; i < history.times.size(); ++i) {
+    if (i % stride != 0 && i + 1 != history.times.size()) continue;
+    std::vector<double> row{history.times[i]};
+    row.insert(row.end(), history.rows[i].begin(), history.rows[i].end());
+    series.rows.push_back(std::move(row));
+  }
+  return series;
+}
+
+/// One problem with one choice: its cells share a reference, and are timed against each other.
+class Group {
+ public:
+  Group(std::vector<Task*> tasks, References& references, results::Writer& writer, Progress& progress)
+      : tasks_(std::move(tasks)), references_(references), writer_(writer), progress_(progress) {}
+
+  void run(Timing const& timing, RunOptions const& options) {
+    results::Cell const& cell = tasks_.front()->prepared.cell;
+    std::string const name = cell.variant.empty() ? cell.problem : cell.problem + " " + cell.variant;
+    progress_.say(name + ": accuracy");
+    measure_all(options);
+    if (interrupted) return;
+    if (timing.enabled) {
+      progress_.say(name + ": timing");
+      time_all(timing);
+    }
+    if (interrupted) return;
+    for (Task* task : tasks_) {
+      if (!task->measured.drift.rows.empty()) writer_.series(task->measured.drift);
+      if (task->keep_history && !task->measured.history.rows.empty()) writer_.series(history_series(*task));
+      writer_.run(task->measured.record);
+    }
+  }
+
+ private:
+  void measure_all(RunOptions const& options) {
+    std::atomic<std::size_t> next = 0;
+    std::mutex mutex;
+    std::exception_ptr trouble;
+    auto const work = [&] {
+      for (std::size_t i = next++; i < tasks_.size() && !interrupted; i = next++) {
+        Task& task = *tasks_[i];
+        try {
+          {
+            std::lock_guard const lock(mutex);
+            if (trouble) return;
+            writer_.begin(task.id, build_id());
+          }
+          task.measured.record = task.prepared.refusal.empty() ? results::Record{} : refused(task.prepared, build_id());
+          if (task.prepared.refusal.empty())
+            task.measured = measure(task.prepared, references_, build_id(), options.timeout);
+        } catch (...) {
+          std::lock_guard const lock(mutex);
+          trouble = std::current_exception();
+          return;
+        }
+        progress_.advance();
+      }
+    };
+    int const processors = options.threads > 0 ? options.threads : int(std::thread::hardware_concurrency());
+    std::vector<std::thread> helpers;
+    for (int i = 1; i < processors; ++i) helpers.emplace_back(work);
+    work();
+    for (std::thread& helper : helpers) helper.join();
+    if (trouble) std::rethrow_exception(trouble);
+  }
+
+  void time_all(Timing const& timing) {
+    std::vector<TimedCell> cells;
+    std::vector<Task*> timed;
+    for (Task* task : tasks_) {
+      results::Cell const& cell = task->prepared.cell;
+      results::Status const status = task->measured.record.status;
+      if (status != results::Status::ok && status != results::Status::inaccurate) {
+        progress_.advance();
+        continue;
+      }
+      cells.push_back(
+          {task->id, task->prepared.problem->timed(cell.formulation, cell.integrator, task->prepared.plan)});
+      timed.push_back(task);
+    }
+    double const part = 1.0 / timing.repetitions;
+    std::vector<TimedResult> const results = time_cells(cells, timing, [&] { progress_.advance(part); });
+    for (std::size_t i = 0; i < timed.size(); ++i) {
+      results::Record& record = timed[i]->measured.record;
+      record.cpu_time_s = results[i].cpu_time;
+      if (results[i].allocations && record.steps && *record.steps > 0)
+        record.allocations_per_step = double(*results[i].allocations) / double(*record.steps);
+    }
+  }
+
+  std::vector<Task*> tasks_;
+  References& references_;
+  results::Writer& writer_;
+  Progress& progress_;
+};
+
+void say_what_would_run(std::vector<Task> const& tasks) {
+  for (Task const& task : tasks) {
+    results::Cell const& cell = task.prepared.cell;
+    std::string const control = cell.h ? fmt::format("h={:g}", *cell.h) : fmt::format("rtol={:g}", *cell.rtol);
+    fmt::print("{} {} {}{}\n", task.id, path_of(cell), control,
+               task.prepared.refusal.empty() ? "" : "  refused: " + task.prepared.refusal);
+  }
+}
+
+}  // namespace
+
+void interruptible() {
+  auto const note = [](int) { interrupted = true; };
+  std::signal(SIGINT, note);
+  std::signal(SIGTERM, note);
+}
+
+std::filesystem::path suite_file(std::string const& name_or_file) {
+  std::filesystem::path const built_in = suites_folder() / (name_or_file + ".toml");
+  bool const is_name = name_or_file.find_first_of("./") == std::string::npos;
+  if (is_name && std::filesystem::exists(built_in)) return built_in;
+  if (!is_name || std::filesystem::exists(name_or_file)) return name_or_file;
+  std::vector<std::string> known;
+  if (std::filesystem::is_directory(suites_folder()))
+    for (auto const& entry : std::filesystem::directory_iterator(suites_folder())) known.push_back(entry.path().stem());
+  std::sort(known.begin(), known.end());
+  throw UsageError(unknown("suite", name_or_file, known));
+}
+
+RunSummary run_suite(Suite const& suite, RunOptions const& options) {
+  std::vector<Task> tasks = prepare_all(suite, options.filter);
+  RunSummary summary;
+  summary.out = options.out.empty() ? std::filesystem::path("polhode-results") / suite.name : options.out;
+  summary.cells = tasks.size();
+  if (options.dry_run) {
+    say_what_would_run(tasks);
+    return summary;
+  }
+
+  std::error_code error;
+  std::filesystem::create_directories(summary.out, error);
+  if (error) throw results::StoreError(fmt::format("{}: {}", summary.out.string(), error.message()));
+  if (options.fresh)
+    for (auto const& entry : std::filesystem::directory_iterator(summary.out))
+      if (entry.path().extension() == ".jsonl") std::filesystem::remove(entry.path());
+  summary.skipped = skip_finished(tasks, summary.out, options.retry_failed);
+  if (tasks.empty()) return summary;
+  std::ofstream(summary.out / "suite.toml") << suite.text;
+
+  results::Meta meta = provenance();
+  meta["suite"] = suite.name;
+  meta["suite_hash"] = results::hash_of(suite.text);
+  meta["reference_methods"] = "Taylor series and 8-stage Gauss, float128";
+  results::Writer writer(summary.out / fmt::format("run-{}-{}.jsonl", std::time(nullptr), getpid()), meta);
+
+  std::vector<std::string> order;
+  std::map<std::string, std::vector<Task*>> groups;
+  for (Task& task : tasks) {
+    std::string const subject = reference_subject(task.prepared.physics);
+    if (!groups.contains(subject)) order.push_back(subject);
+    groups[subject].push_back(&task);
+  }
+  References references(references_folder());
+  Progress progress(tasks.size() * (suite.timing.enabled ? 2 : 1));
+  for (std::string const& subject : order) {
+    if (interrupted) break;
+    Group(groups[subject], references, writer, progress).run(suite.timing, options);
+    if (interrupted) break;
+    for (Task* task : groups[subject]) {
+      results::Status const status = task->measured.record.status;
+      summary.ok += status == results::Status::ok;
+      summary.refused += status == results::Status::refused;
+      summary.failed += status != results::Status::ok && status != results::Status::refused;
+      task->measured = {};  // its record is on disk
+    }
+  }
+  summary.interrupted = interrupted;
+  return summary;
+}
+
+}  // namespace polhode::bench

@@ -1,0 +1,43 @@
+#pragma once
+/// A suite, run: cells are prepared (all mistakes are found before anything is written), grouped by problem, measured
+/// in parallel, timed one at a time, and recorded. What a folder already holds from this build is not run again.
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/suite.hpp"
+
+namespace polhode::bench {
+
+/// A valid selection that matches no cell. Exit code 3.
+struct NothingSelected : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct RunOptions {
+  std::filesystem::path out;  ///< empty: polhode-results/SUITE
+  std::string filter;         ///< regular expression over "problem/variant/formulation/integrator/policy"; empty: all
+  bool fresh = false;         ///< forget what the folder holds
+  bool retry_failed = false;  ///< run again what did not end ok
+  bool dry_run = false;       ///< say what would run
+  double timeout = 60;        ///< per cell [s]
+  int threads = 0;            ///< of the accuracy pass; 0: one per processor
+};
+
+struct RunSummary {
+  std::filesystem::path out;
+  std::size_t cells = 0, skipped = 0, ok = 0, refused = 0, failed = 0;
+  bool interrupted = false;
+};
+
+/// The suite of that name among the built-in ones, or that file.
+std::filesystem::path suite_file(std::string const& name_or_file);
+
+/// Throws SuiteError, UsageError (bad filter), NothingSelected, results::StoreError, ReferenceError.
+RunSummary run_suite(Suite const& suite, RunOptions const& options);
+
+/// From now on SIGINT and SIGTERM end a run between cells.
+void interruptible();
+
+}  // namespace polhode::bench

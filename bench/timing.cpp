@@ -1,0 +1,92 @@
+#include "bench/timing.hpp"
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <map>
+#include <random>
+
+#include "bench/allocations.hpp"
+#include "bench/vocabulary.hpp"
+
+namespace polhode::bench {
+namespace {
+
+/// Keeps the CPU time per iteration of every repetition, by benchmark name.
+class Collector final : public benchmark::BenchmarkReporter {
+ public:
+  bool ReportContext(Context const&) override { return true; }
+  void ReportRuns(std::vector<Run> const& runs) override {
+    for (Run const& run : runs)
+      if (run.run_type == Run::RT_Iteration && !run.error_occurred && run.iterations > 0)
+        seconds[run.run_name.function_name].push_back(run.cpu_accumulated_time / double(run.iterations));
+  }
+  std::map<std::string, std::vector<double>> seconds;
+};
+
+double median_of_sorted(std::vector<double> const& sorted) {
+  std::size_t const n = sorted.size();
+  return n % 2 == 1 ? sorted[n / 2] : (sorted[n / 2 - 1] + sorted[n / 2]) / 2;
+}
+
+}  // namespace
+
+void initialise_timer(std::vector<std::string> const& flags) {
+  std::vector<std::string> words{"polhode", "--benchmark_enable_random_interleaving=true"};
+  words.insert(words.end(), flags.begin(), flags.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  int argc = int(argv.size());
+  benchmark::Initialize(&argc, argv.data());
+  if (argc > 1) throw UsageError("Google Benchmark does not know the flag " + quote(argv[1]));
+}
+
+results::CpuTime bootstrap(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  results::CpuTime time{.median = median_of_sorted(values), .low = 0, .high = 0, .repetitions = int(values.size())};
+  constexpr int resamples = 1000;
+  std::mt19937 random(1);
+  std::uniform_int_distribution<std::size_t> pick(0, values.size() - 1);
+  std::vector<double> medians, sample(values.size());
+  for (int i = 0; i < resamples; ++i) {
+    for (double& x : sample) x = values[pick(random)];
+    std::sort(sample.begin(), sample.end());
+    medians.push_back(median_of_sorted(sample));
+  }
+  std::sort(medians.begin(), medians.end());
+  time.low = medians[std::size_t(0.025 * resamples)];
+  time.high = medians[std::size_t(0.975 * resamples)];
+  return time;
+}
+
+std::vector<TimedResult> time_cells(std::vector<TimedCell> const& cells, Timing const& timing,
+                                    std::function<void()> const& progress) {
+  std::vector<TimedResult> results(cells.size());
+  benchmark::ClearRegisteredBenchmarks();
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (!cells[i].solve) continue;
+    TimedSolve& solve = *cells[i].solve;
+    // Warm: a cold first solve would calibrate too few iterations and inflate solves of a microsecond 2-3 times.
+    for (int warm = 0; warm < 3; ++warm) solve.solve();
+    std::int64_t const before = allocations_of_this_thread();
+    solve.solve();
+    results[i].allocations = allocations_of_this_thread() - before;
+    benchmark::RegisterBenchmark(cells[i].cell.c_str(),
+                                 [&solve, &progress](benchmark::State& state) {
+                                   for (auto _ : state) benchmark::DoNotOptimize(solve.solve());
+                                   progress();
+                                 })
+        ->MinTime(timing.min_time)
+        ->Repetitions(timing.repetitions);
+  }
+  Collector collector;
+  benchmark::RunSpecifiedBenchmarks(&collector, nullptr, "all");
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    auto const found = collector.seconds.find(cells[i].cell);
+    if (found != collector.seconds.end()) results[i].cpu_time = bootstrap(found->second);
+  }
+  benchmark::ClearRegisteredBenchmarks();
+  return results;
+}
+
+}  // namespace polhode::bench
