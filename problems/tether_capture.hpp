@@ -108,7 +108,7 @@ inline int maxima(std::vector<double> const& y, double least) {
     if (rising) {
       high = std::max(high, value);
       if (value < high - least) {
-        count += high > y.front() + least ? 1 : 0;
+        count += high > low + least ? 1 : 0;
         rising = false;
         low = value;
       }
