@@ -29,8 +29,12 @@ std::map<std::string, std::set<std::string>> const allowed{
     {"tests", {"problems", "integrators", "bench", "results", "report", "tests"}},
 };
 
-std::string layer_of(std::string const& path) { return path.substr(0, path.find('/')); }
-bool is_header(std::string const& path) { return path.ends_with(".hpp"); }
+std::string layer_of(std::string const& path) {
+  return path.substr(0, path.find('/'));
+}
+bool is_header(std::string const& path) {
+  return path.ends_with(".hpp");
+}
 
 /// What the build writes: CMake's facts for the record's provenance.
 std::set<std::string> const generated{"build_info.hpp"};
@@ -79,7 +83,8 @@ std::vector<std::string> violations(Sources const& sources) {
       else if (!may_include(file, included))
         wrong.push_back(file + ": must not know " + included);
     }
-    if (is_header(file) && !text.starts_with("#pragma once\n")) wrong.push_back(file + ": must start with #pragma once");
+    if (is_header(file) && !text.starts_with("#pragma once\n"))
+      wrong.push_back(file + ": must start with #pragma once");
     if (is_header(file) && !text.starts_with("#pragma once\n///"))
       wrong.push_back(file + ": the file comment (///) must follow #pragma once");
     std::vector<std::string> way;
@@ -132,8 +137,8 @@ TEST(Layering, UpwardIncludesAreFound) {
                         {"results/s.cpp", "  #include \"report/r.hpp\"\n"}};
   EXPECT_THAT(violations(sources),
               ElementsAre("bench/run.cpp: must not know report/r.hpp", "integrators/b.hpp: must not know bench/c.hpp",
-                          "problems/a.hpp: must not know integrators/b.hpp", "report/r.hpp: must not know problems/a.hpp",
-                          "results/s.cpp: must not know report/r.hpp"));
+                          "problems/a.hpp: must not know integrators/b.hpp",
+                          "report/r.hpp: must not know problems/a.hpp", "results/s.cpp: must not know report/r.hpp"));
 }
 
 TEST(Layering, CyclesAreFound) {
@@ -151,9 +156,8 @@ TEST(Layering, HeadersWithoutGuardOrCommentAreFound) {
 }
 
 TEST(Layering, PathsStartAtTheRoot) {
-  EXPECT_THAT(
-      violations({{"bench/a.cpp", "#include \"b.hpp\"\n"}, {"bench/b.hpp", head}}),
-      ElementsAre("bench/a.cpp: \"b.hpp\" is no file of the project (paths start at its root)"));
+  EXPECT_THAT(violations({{"bench/a.cpp", "#include \"b.hpp\"\n"}, {"bench/b.hpp", head}}),
+              ElementsAre("bench/a.cpp: \"b.hpp\" is no file of the project (paths start at its root)"));
 }
 
 }  // namespace

@@ -130,7 +130,8 @@ Quad sine_derivative(Quad x, int k) {
 }
 
 TEST(Jets, GeometricSeriesIsADivision) {
-  expect_coefficients(J(1.0) / line(1, -0.5), [](int k) { return power(Quad(0.5), k); }, "1 / (1 - t/2)");
+  expect_coefficients(
+      J(1.0) / line(1, -0.5), [](int k) { return power(Quad(0.5), k); }, "1 / (1 - t/2)");
 }
 
 TEST(Jets, BinomialSeriesIsASquareRoot) {
@@ -155,13 +156,17 @@ TEST(Jets, SineAndCosine) {
 TEST(Jets, ArcTangentInvertsSineAndCosine) {
   J const x = line(0.75, 2);
   expect_coefficients(
-      atan2(sin(x), cos(x)), [](int k) { return k == 0 ? Quad(0.75) : k == 1 ? Quad(2.0) : Quad(0.0); }, "atan2(sin x, cos x)");
+      atan2(sin(x), cos(x)), [](int k) { return k == 0   ? Quad(0.75)
+                                                : k == 1 ? Quad(2.0)
+                                                         : Quad(0.0); },
+      "atan2(sin x, cos x)");
 }
 
 TEST(Jets, ArcTangentOfALineOverAConstant) {
   J const y = line(0, 1);
   expect_coefficients(
-      atan2(y, J(1.0)), [](int k) { return k % 2 == 0 ? Quad(0.0) : (k % 4 == 1 ? Quad(1.0) : -Quad(1.0)) / Quad(k); }, "atan t");
+      atan2(y, J(1.0)), [](int k) { return k % 2 == 0 ? Quad(0.0) : (k % 4 == 1 ? Quad(1.0) : -Quad(1.0)) / Quad(k); },
+      "atan t");
 }
 
 TEST(Jets, ProductsAndConstants) {

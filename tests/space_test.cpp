@@ -33,7 +33,9 @@ constexpr double rounding = 1e-13;
 /// Offsets [rad] in the chart: none, near the identity, across the switch of the series (0.4), large.
 constexpr double offsets[] = {0, 1e-12, 1e-6, 1e-3, 0.3, 0.399, 0.401, 1.5, 2.5};
 
-Quat<D> random_quaternion(Random& random, double size) { return scaled(D(size), in<D>(random.attitude())); }
+Quat<D> random_quaternion(Random& random, double size) {
+  return scaled(D(size), in<D>(random.attitude()));
+}
 
 TEST(SpaceLaws, Euclidean3) {
   Random random(1);
@@ -178,7 +180,9 @@ TEST(Project, AMatrixGoesToTheNearestRotation) {
 
 // ---- The policy `project` -------------------------------------------------------------------------------------------
 
-double ulp(double x) { return std::nextafter(std::fabs(x), HUGE_VAL) - std::fabs(x); }
+double ulp(double x) {
+  return std::nextafter(std::fabs(x), HUGE_VAL) - std::fabs(x);
+}
 double ulps_apart(Quat<double> const& a, Quat<double> const& b) {
   double worst = 0;
   Quat<double>::each([&](double p, double q) { worst = std::max(worst, std::fabs(p - q) / ulp(q)); }, a, b);
@@ -207,8 +211,8 @@ TEST(ProjectPolicy, IsRenormalisationAndThePapersEquation16) {
   }
   EXPECT_LE(worst_renormalised, 2);
   EXPECT_LE(worst_paper, 2);
-  // Renormalisation in double cannot promise more: in units of 2^-53, q.q errs by 4, so the norm by 3 and a component by
-  // 4, and the square of the result by 8. Two units in the last place of 1 are the rule.
+  // Renormalisation in double cannot promise more: in units of 2^-53, q.q errs by 4, so the norm by 3 and a component
+  // by 4, and the square of the result by 8. Two units in the last place of 1 are the rule.
   EXPECT_LE(worst_defect, 8 * 0x1p-53);
   EXPECT_GE(within_two_ulp, 99'500);
 }
