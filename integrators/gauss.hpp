@@ -75,7 +75,8 @@ struct GaussMu {
   }
 };
 
-/// order 2s, s stages; symmetric; keeps the norm, energy and |L| of a free body on flat coordinates.
+/// order 2s, s stages; keeps the norm, energy and |L| of a free body. Symmetric on flat coordinates; on a group for
+/// s = 1 alone, because the chart is centred at the beginning of the step.
 /// One sweep evaluates each stage once, from the newest values of the others. Iteration ends when no component of the
 /// stages sets a new minimum of its change, twice running: there is nothing more to gain in this arithmetic.
 template <int s>
