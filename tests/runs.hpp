@@ -1,0 +1,58 @@
+#pragma once
+/// Runs of cells for tests: a cell in one line, its record, its history.
+#include <string>
+#include <utility>
+
+#include "bench/cell.hpp"
+
+namespace polhode::test {
+
+/// One cell; chain what differs:  a_cell("free_body", "s3", "cf4").with_h(0.1).of_variant("free").
+struct CellUnderTest {
+  results::Cell cell;
+
+  CellUnderTest with_h(double h) const {
+    return changed([&](results::Cell& c) { c.h = h; });
+  }
+  CellUnderTest with_rtol(double rtol) const {
+    return changed([&](results::Cell& c) { c.rtol = rtol; });
+  }
+  CellUnderTest of_variant(std::string const& v) const {
+    return changed([&](results::Cell& c) { c.variant = v; });
+  }
+  CellUnderTest until(double t_end) const {
+    return changed([&](results::Cell& c) { c.t_end = t_end; });
+  }
+  CellUnderTest projected() const {
+    return changed([&](results::Cell& c) { c.policy = "project"; });
+  }
+  CellUnderTest set(std::string const& name, std::vector<double> const& value) const {
+    return changed([&](results::Cell& c) { c.set[name] = value; });
+  }
+
+  /// Its history at samples, outputs (`every` seconds) and the end, and how it ended.
+  bench::Trajectory simulated(double every = 0) const { return bench::simulate(bench::prepare(cell, every), 0); }
+  /// Everything that the harness measures; references are made once per test program.
+  bench::Measured measured() const {
+    static bench::References references{"no committed references: every one is certified here"};
+    return bench::measure(bench::prepare(cell), references, "test", 0);
+  }
+
+ private:
+  template <class Change>
+  CellUnderTest changed(Change change) const {
+    CellUnderTest copy = *this;
+    change(copy.cell);
+    return copy;
+  }
+};
+
+inline CellUnderTest a_cell(std::string_view problem, std::string_view formulation, std::string_view integrator) {
+  CellUnderTest it;
+  it.cell.problem = problem;
+  it.cell.formulation = formulation;
+  it.cell.integrator = integrator;
+  return it;
+}
+
+}  // namespace polhode::test
