@@ -11,7 +11,7 @@ namespace polhode {
 /// Drives a pair (see EmbeddedPair) with error control per component: |e_i| <= atol + rtol max(|y_i|, |y_new,i|), RMS.
 /// fails   Status::step_underflow if the step falls below 10 ulp of t, Status::max_steps after `most` trial steps in
 /// one
-///         advance, Status::diverged if the state is not finite
+///         advance, Status::diverged if the state or its slope is not finite
 template <class Pair, Problem P>
 class Controlled {
   using M = typename P::Space;
@@ -33,6 +33,7 @@ class Controlled {
   Status step(Point<M>& x, R& t, R t_end) {
     if (!fresh_slope_) slope_ = M::rate(x, (*problem_)(S(t), x));
     fresh_slope_ = true;
+    if (!all_finite(slope_)) return Status::diverged;
     if (!(R(0.0) < h_)) h_ = starting_step(x, t, t_end - t);
     bool rejected_before = false;
     for (std::int64_t trial = 0; trial < most; ++trial) {
