@@ -1,0 +1,47 @@
+/// Nothing is allocated once a method is bound: every own method on every formulation of every problem, fully typed.
+#include <gtest/gtest.h>
+
+#include <new>
+
+#include "bench/allocations.hpp"
+#include "tests/runs.hpp"
+
+namespace polhode {
+namespace {
+
+using bench::allocations_of_this_thread;
+
+TEST(Allocations, AreCounted) {
+  auto const before = allocations_of_this_thread();
+  ::operator delete(::operator new(8));  // called by name: a compiler may not leave it out
+  ::operator delete[](::operator new[](8));
+  EXPECT_EQ(allocations_of_this_thread() - before, 2);
+}
+
+TEST(Allocations, NoneInAnyAdvance) {
+  int checked = 0;
+  for (bench::ProblemWord const& problem : bench::vocabulary().problems)
+    for (std::string const& formulation : problem.formulations)
+      for (bench::IntegratorWord const& method : bench::vocabulary().integrators) {
+        if (method.rival) continue;
+        for (bool fixed : {true, false}) {
+          if (fixed ? !method.fixed : !method.adaptive) continue;
+          auto cell = test::a_cell(problem.name, formulation, method.name).until(2);
+          cell = fixed ? cell.with_h(0.1) : cell.with_rtol(1e-8);
+          auto const prepared = bench::prepare(cell.cell);
+          if (!prepared.refusal.empty()) continue;
+          auto const solve = prepared.problem->timed(formulation, method.name, prepared.plan);
+          ASSERT_TRUE(solve) << problem.name << ", " << formulation << ", " << method.name;
+          auto const before = allocations_of_this_thread();
+          Status const status = solve->solve();
+          auto const allocations = allocations_of_this_thread() - before;
+          EXPECT_EQ(allocations, 0) << problem.name << ", " << formulation << ", " << method.name;
+          EXPECT_EQ(status, Status::ok) << problem.name << ", " << formulation << ", " << method.name;
+          ++checked;
+        }
+      }
+  EXPECT_GE(checked, 75);  // 3 problems; 10 fixed-step methods and an adaptive one on flat space, 10 on two groups
+}
+
+}  // namespace
+}  // namespace polhode
