@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <memory>
@@ -133,6 +134,26 @@ void add_list(CLI::App& app) {
 
 // ---- cells from the command line ------------------------------------------------------------------------------------
 
+double number_in(std::string_view text) {
+  double value = 0;
+  auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error == std::errc::result_out_of_range) throw UsageError(quote(text) + " is beyond the range of a double");
+  if (error != std::errc() || end != text.data() + text.size()) throw UsageError(quote(text) + " is not a number");
+  return value;
+}
+
+/// An option that takes a number; CLI11 by itself would read '' as 0.
+CLI::Option* add_number(CLI::App& verb, std::string const& flag, double& value, std::string const& help) {
+  return verb.add_option(flag, value, help)->check([](std::string const& text) -> std::string {
+    try {
+      static_cast<void>(number_in(text));
+      return {};
+    } catch (UsageError const& error) {
+      return error.what();
+    }
+  });
+}
+
 /// The flags that name one cell.
 struct CellFlags {
   results::Cell cell;
@@ -143,25 +164,29 @@ struct CellFlags {
   void add_physics(CLI::App& verb) {
     verb.add_option("PROBLEM", cell.problem, "Problem; see `polhode list problems`")->required();
     verb.add_option("--variant", cell.variant, "Variant words, joined by commas");
-    has_t_end = verb.add_option("--t-end", t_end, "Horizon [s]; default the problem's own");
+    has_t_end = add_number(verb, "--t-end", t_end, "Horizon [s]; default the problem's own");
     verb.add_option("--set", settings, "Change a parameter: NAME=NUMBER[,NUMBER...]; repeatable")
-        ->type_name("NAME=VALUE");
+        ->type_name("NAME=VALUE")
+        ->allow_extra_args(false);  // what follows the value is no second one: it may be the problem
   }
   void add_method(CLI::App& verb) {
     verb.add_option("--formulation", cell.formulation, "Attitude description: quaternion, s3, so3")
         ->default_str("quaternion");
     verb.add_option("--integrator", cell.integrator, "Integrator; see `polhode list integrators`")->required();
     verb.add_option("--policy", cell.policy, "Norm policy: none, project")->default_str("none");
-    has_h = verb.add_option("--h", h, "Step size [s]; divides the sample period");
-    has_rtol = verb.add_option("--rtol", rtol, "Relative tolerance, instead of --h");
-    has_atol = verb.add_option("--atol", atol, "Absolute tolerance; default rtol / 100");
+    has_h = add_number(verb, "--h", h, "Step size [s]; divides the sample period");
+    has_rtol = add_number(verb, "--rtol", rtol, "Relative tolerance, instead of --h");
+    has_atol = add_number(verb, "--atol", atol, "Absolute tolerance; default rtol / 100");
   }
   /// The cell that the flags name. Throws UsageError.
   results::Cell chosen() const {
     results::Cell chosen = cell;
     if (chosen.formulation.empty()) chosen.formulation = "quaternion";
-    for (std::string const& text : settings)
-      chosen.set.insert_or_assign(parse_setting(text).first, parse_setting(text).second);
+    for (std::string const& text : settings) {
+      auto const [name, values] = parse_setting(text);
+      if (!chosen.set.try_emplace(name, values).second)
+        throw UsageError(fmt::format("--set {}: {} is given twice", quote(text), quote(name)));
+    }
     if (has_h && has_h->count() > 0) chosen.h = h;
     if (has_rtol && has_rtol->count() > 0) chosen.rtol = rtol;
     if (has_atol && has_atol->count() > 0) chosen.atol = atol;
@@ -227,6 +252,11 @@ int run_simulation(CellFlags const& flags, double every, std::string const& out)
     double const period = prepared.problem->sample_period();
     every = period > 0 ? period : prepared.cell.t_end / 100;
   }
+  constexpr double most_rows = 1e7;
+  if (prepared.cell.t_end / every > most_rows)
+    throw UsageError(
+        fmt::format("outputs every {:g} s until {:g} s are more than {:.0f} rows; give --every {:g} or more", every,
+                    prepared.cell.t_end, most_rows, prepared.cell.t_end / most_rows));
   prepared = prepare(cell, every);
   if (!prepared.refusal.empty())
     throw UsageError(
@@ -249,7 +279,7 @@ void add_simulate(CLI::App& app, int& code) {
   flags->add_physics(*verb);
   flags->add_method(*verb);
   CLI::Option* has_every =
-      verb->add_option("--every", *every, "Output interval [s]; default the sample period, else t_end / 100");
+      add_number(*verb, "--every", *every, "Output interval [s]; default the sample period, else t_end / 100");
   verb->add_option("--out", *out, "File instead of standard output")->type_name("FILE");
   verb->callback([=, &code] {
     if (has_every->count() > 0) check_positive("every", *every);
@@ -258,6 +288,21 @@ void add_simulate(CLI::App& app, int& code) {
 }
 
 // ---- run ------------------------------------------------------------------------------------------------------------
+
+int thread_count(double wanted) {
+  constexpr int most = 1024;
+  if (wanted >= 1 && wanted <= most && wanted == std::floor(wanted)) return int(wanted);
+  throw UsageError(fmt::format("threads = {}: a whole number from 1 to {} is wanted", wanted, most));
+}
+
+/// What the cells of a suite get wrong names the suite's file.
+RunSummary run_in_file(std::filesystem::path const& file, Suite const& suite, RunOptions const& options) {
+  try {
+    return run_suite(suite, options);
+  } catch (SuiteError const& error) {
+    throw SuiteError(fmt::format("{}: {}", file.string(), error.what()));
+  }
+}
 
 void add_run(CLI::App& app, int& code) {
   auto const options = std::make_shared<RunOptions>();
@@ -271,13 +316,21 @@ void add_run(CLI::App& app, int& code) {
   verb->add_flag("--fresh", options->fresh, "Forget what the folder holds");
   verb->add_flag("--retry-failed", options->retry_failed, "Run again what failed");
   verb->add_flag("--dry-run", options->dry_run, "Say what would run");
-  verb->add_option("--timeout", options->timeout, "Limit per cell [s]; 0 for none")->capture_default_str();
-  verb->add_option("--threads", options->threads, "Of the accuracy pass; default one per processor");
+  add_number(*verb, "--timeout", options->timeout, "Limit per cell [s]; 0 for none")->capture_default_str();
+  auto const threads = std::make_shared<double>(0);
+  CLI::Option* has_threads =
+      add_number(*verb, "--threads", *threads, "Of the accuracy pass; default one per processor")->type_name("INT");
   verb->callback([=, &code] {
     options->out = *out;
-    Suite const suite = read_suite(suite_file(*name), vocabulary());
+    bool const no_limit = !(options->timeout >= 0) || std::isinf(options->timeout);
+    if (no_limit)
+      throw UsageError(
+          fmt::format("timeout = {}: a limit is a finite number of seconds; 0 for none", options->timeout));
+    if (has_threads->count() > 0) options->threads = thread_count(*threads);
+    std::filesystem::path const file = suite_file(*name);
+    Suite const suite = read_suite(file, vocabulary());
     interruptible();
-    RunSummary const summary = run_suite(suite, *options);
+    RunSummary const summary = run_in_file(file, suite, *options);
     if (options->dry_run) return;
     fmt::print("{}: {} cells: {} ok, {} refused, {} failed, {} already done\n", summary.out.string(), summary.cells,
                summary.ok, summary.refused, summary.failed, summary.skipped);
@@ -291,6 +344,13 @@ void add_run(CLI::App& app, int& code) {
 
 // ---- reference ------------------------------------------------------------------------------------------------------
 
+/// Before the work, so that the work is not lost.
+void make_folder(std::filesystem::path const& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) throw ReferenceError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
+}
+
 void add_reference(CLI::App& app) {
   auto const flags = std::make_shared<CellFlags>();
   auto const out = std::make_shared<std::string>();
@@ -303,9 +363,10 @@ void add_reference(CLI::App& app) {
     cell.formulation = "quaternion";
     cell.rtol = 1e-6;
     PreparedCell const prepared = prepare(cell);
+    std::filesystem::path const folder = out->empty() ? references_folder() : std::filesystem::path(*out);
+    make_folder(folder);
     Reference const reference = Reference::solve(*prepared.problem, prepared.schedule);
     Certificate const certificate = certify(prepared.physics, *prepared.problem, prepared.schedule, reference);
-    std::filesystem::path const folder = out->empty() ? references_folder() : std::filesystem::path(*out);
     save(certificate, folder);
     fmt::print("{}  bar {:.1e} rad  (Taylor against Gauss {:.1e}, Gauss against half its step {:.1e})  {}\n",
                certificate.id, certificate.bar, certificate.disagreement, certificate.halving, certificate.subject);
@@ -321,11 +382,11 @@ std::pair<std::string, std::vector<double>> parse_setting(std::string const& tex
   std::vector<double> values;
   for (std::size_t from = equals + 1; from <= text.size();) {
     std::size_t const to = std::min(text.find(',', from), text.size());
-    double value = 0;
-    auto const [end, error] = std::from_chars(text.data() + from, text.data() + to, value);
-    if (error != std::errc() || end != text.data() + to)
-      throw UsageError(fmt::format("--set {}: {} is not a number", quote(text), quote(text.substr(from, to - from))));
-    values.push_back(value);
+    try {
+      values.push_back(number_in(std::string_view(text).substr(from, to - from)));
+    } catch (UsageError const& error) {
+      throw UsageError(fmt::format("--set {}: {}", quote(text), error.what()));
+    }
     from = to + 1;
   }
   return {text.substr(0, equals), values};

@@ -2,8 +2,11 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <iostream>
+#include <new>
 
 #include "bench/commands.hpp"
 #include "report/report.hpp"
@@ -28,6 +31,12 @@ int complain(int code, std::string const& what) {
   return code;
 }
 
+std::vector<std::string> verb_names(CLI::App const& app) {
+  std::vector<std::string> names;
+  for (CLI::App const* verb : app.get_subcommands({})) names.push_back(verb->get_name());
+  return names;
+}
+
 void add_report(CLI::App& app) {
   static std::string folder, out;
   CLI::App* verb = app.add_subcommand("report", "Make tables, figures and a page from a result folder");
@@ -35,26 +44,52 @@ void add_report(CLI::App& app) {
   verb->add_option("--out", out, "Where to write; default DIR/report")->type_name("DIR");
   verb->callback([] {
     std::filesystem::path const target = out.empty() ? folder + "/report" : out;
-    report::write_report(results::read(folder), target);
+    results::Contents const contents = results::read(folder);
+    if (contents.metas.empty())
+      throw results::StoreError(folder + ": holds no results; give a folder that `polhode run` wrote");
+    report::write_report(contents, target);
     fmt::print("{}\n", (target / "report.html").string());
   });
 }
 
-/// CLI11's message, with the flag that was probably meant.
+/// What stands where nothing was expected: a flag, a verb or an argument.
+std::string explain_extra(std::string const& word, CLI::App const& app, CLI::App const& verb) {
+  if (word.size() > 1 && word[0] == '-') {
+    std::vector<std::string> known;
+    for (CLI::Option const* option : verb.get_options())
+      for (std::string const& name : option->get_lnames()) known.push_back("--" + name);
+    std::string const flag = word.substr(0, word.find('='));
+    std::string const meant = bench::nearest(flag, known);
+    return "unknown flag " + bench::quote(flag) + (meant.empty() ? "" : "; did you mean '" + meant + "'?");
+  }
+  if (&verb != &app) return "unexpected argument " + bench::quote(word);
+  return bench::unknown("verb", word, verb_names(app));
+}
+
+/// CLI11's message in our words, with what was probably meant.
 std::string explain(CLI::ParseError const& error, CLI::App const& app) {
-  std::string text = error.what();
   auto const chosen = app.get_subcommands();
   CLI::App const& verb = chosen.empty() ? app : *chosen.front();
-  std::vector<std::string> known;
-  for (CLI::Option const* option : verb.get_options())
-    for (std::string const& name : option->get_lnames()) known.push_back("--" + name);
-  auto const at = text.find("--");
-  if (dynamic_cast<CLI::ExtrasError const*>(&error) && at != std::string::npos) {
-    std::string const word = text.substr(at, text.find_first_of(" =", at) - at);
-    std::string const meant = bench::nearest(word, known);
-    text = "unknown flag " + bench::quote(word) + (meant.empty() ? "" : "; did you mean '" + meant + "'?");
-  }
+  std::vector<std::string> const extra = app.remaining(true);
+  bool const unplaced = chosen.empty() || dynamic_cast<CLI::ExtrasError const*>(&error);
+  std::string text = error.what();
+  std::string const what = text.substr(0, text.find(':'));
+  if (unplaced && !extra.empty())
+    text = explain_extra(extra.front(), app, verb);
+  else if (dynamic_cast<CLI::RequiredError const*>(&error) && chosen.empty())
+    text = fmt::format("no verb; choose from {}", fmt::join(verb_names(app), ", "));
+  else if (text.find("At Most") != std::string::npos)
+    text = what + " is given more than once";
+  else if (dynamic_cast<CLI::ArgumentMismatch const*>(&error) && text.ends_with("missing"))
+    text = what + ": a value is missing";
   return text + " (see `polhode " + (chosen.empty() ? "" : verb.get_name() + " ") + "--help`)";
+}
+
+/// The exit code, once everything is out: a full disk must not pass for success.
+int finish(int code) {
+  std::cout.flush();
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout) return code;
+  return complain(exit_bad_file, fmt::format("standard output: cannot be written: {}", std::strerror(errno)));
 }
 
 }  // namespace
@@ -71,15 +106,17 @@ int main(int argc, char** argv) {
   add_report(app);
   try {
     app.parse(argc, argv);
-    return code;
+    return finish(code);
   } catch (CLI::Success const& success) {  // --help, --version
-    return app.exit(success);
+    return finish(app.exit(success));
   } catch (CLI::ParseError const& error) {
     return complain(exit_usage, explain(error, app));
   } catch (bench::UsageError const& error) {
     return complain(exit_usage, error.what());
   } catch (bench::NothingSelected const& error) {
     return complain(exit_nothing_selected, error.what());
+  } catch (std::bad_alloc const&) {
+    return complain(exit_run_failed, "out of memory");
   } catch (std::exception const& error) {  // files: suites, records, references, reports
     return complain(exit_bad_file, error.what());
   }

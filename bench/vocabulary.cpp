@@ -173,6 +173,7 @@ void check_positive(std::string_view name, double value) {
   std::string_view rule = "a tolerance is a positive finite number";
   if (name == "h") rule = "a step size is a positive finite number of seconds";
   if (name == "t_end") rule = "a horizon is a positive finite number of seconds";
+  if (name == "every") rule = "an output interval is a positive finite number of seconds";
   throw UsageError(fmt::format("{} = {}: {}", name, value, rule));
 }
 

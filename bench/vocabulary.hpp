@@ -69,7 +69,7 @@ std::string canonical_variant(ProblemWord const& problem, std::string_view selec
 void check_formulation(ProblemWord const& problem, std::string_view formulation);
 void check_policy(Vocabulary const& vocabulary, std::string_view policy);
 void check_parameter(ProblemWord const& problem, std::string_view name, std::vector<double> const& value);
-/// `name` is "h", "rtol", "atol" or "t_end", all of which are positive and finite.
+/// `name` is "h", "rtol", "atol", "t_end" or "every", all of which are positive and finite.
 void check_positive(std::string_view name, double value);
 /// h xor rtol, as the integrator can; fills in the default atol = rtol / 100.
 void check_control(IntegratorWord const& integrator, results::Cell& cell);

@@ -1,0 +1,147 @@
+/// polhode-bench: what a step costs, side by side in one run. Google Benchmark with its own flags
+/// (--benchmark_filter=...); repetitions are interleaved at random, and the pairs' ratios are printed at the end.
+/// Absolute times are this machine's.
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <boost/numeric/odeint/stepper/runge_kutta4_classic.hpp>
+#include <cstring>
+#include <map>
+
+#include "bench/cell.hpp"
+#include "bench/provenance.hpp"
+
+namespace {
+
+using namespace polhode;
+using namespace polhode::bench;
+
+constexpr double step_size = 0.01;  // [s]
+
+/// One solve of the problem's horizon with the typed method; the rate is in steps.
+void solve_cost(benchmark::State& state, TimedSolve& solve, double steps) {
+  for (auto _ : state) benchmark::DoNotOptimize(solve.solve());
+  state.counters["per_step"] =
+      benchmark::Counter(steps * double(state.iterations()), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+/// What an Odeint user would write for the free body: a plain array and a lambda, nothing of ours.
+void plain_odeint_rk4(benchmark::State& state) {
+  using State = std::array<double, 7>;
+  auto const chosen = problem_named("free_body").choose({});
+  BodyParameters const& body = chosen->body();
+  double const Jx = body.inertia[0], Jy = body.inertia[1], Jz = body.inertia[2];
+  double const kx = (Jy - Jz) / Jx, ky = (Jz - Jx) / Jy, kz = (Jx - Jy) / Jz;
+  auto const field = [=](State const& y, State& dy, double) {
+    double const p = .5 * y[4], q = .5 * y[5], r = .5 * y[6];
+    dy[0] = y[3] * p + y[1] * r - y[2] * q;
+    dy[1] = y[3] * q + y[2] * p - y[0] * r;
+    dy[2] = y[3] * r + y[0] * q - y[1] * p;
+    dy[3] = -(y[0] * p) - y[1] * q - y[2] * r;
+    dy[4] = kx * (y[5] * y[6]);
+    dy[5] = ky * (y[6] * y[4]);
+    dy[6] = kz * (y[4] * y[5]);
+  };
+  Quat<double> const q = body.attitude<double>();
+  Vec3<double> const w = body.rate<double>();
+  long const steps = std::lround(chosen->horizon() / step_size);
+  for (auto _ : state) {
+    State y{q.x, q.y, q.z, q.w, w.x, w.y, w.z};
+    boost::numeric::odeint::runge_kutta4_classic<State> stepper;
+    for (long i = 0; i < steps; ++i) stepper.do_step(field, y, double(i) * step_size, step_size);
+    benchmark::DoNotOptimize(y);
+  }
+  state.counters["per_step"] = benchmark::Counter(double(steps) * double(state.iterations()),
+                                                  benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+/// Two benchmarks that are to be compared; names without "/repeats".
+struct Pair {
+  std::string what, ours, rival;
+};
+std::vector<Pair> const pairs{{"RK4 step, free body: polhode / Odeint on std::array", "step/free_body/quaternion/rk4",
+                               "plain/free_body/odeint_rk4"},
+                              {"RK4 step, free body: polhode / Odeint behind our face", "step/free_body/quaternion/rk4",
+                               "step/free_body/quaternion/odeint_rk4"},
+                              {"RK4 step, PD slew: polhode / Odeint behind our face", "step/pd_slew/quaternion/rk4",
+                               "step/pd_slew/quaternion/odeint_rk4"},
+                              {"RK4, tether capture, 2 steps a sample: polhode / Odeint behind our face",
+                               "step/tether_capture/quaternion/rk4", "step/tether_capture/quaternion/odeint_rk4"},
+                              {"DP5 step, free body: polhode / Odeint behind our face",
+                               "step/free_body/quaternion/dopri5", "step/free_body/quaternion/odeint_dopri5"}};
+
+/// The usual table, and the medians for the ratios.
+class Reporter final : public benchmark::ConsoleReporter {
+ public:
+  void ReportRuns(std::vector<Run> const& runs) override {
+    ConsoleReporter::ReportRuns(runs);
+    for (Run const& run : runs)
+      if (run.run_type == Run::RT_Aggregate && run.aggregate_name == "median" && run.iterations > 0)
+        median_[run.run_name.function_name] = run.cpu_accumulated_time / double(run.iterations);
+  }
+  void print_ratios() {
+    bool first = true;
+    for (Pair const& pair : pairs) {
+      auto const ours = median_.find(pair.ours), rival = median_.find(pair.rival);
+      if (ours == median_.end() || rival == median_.end()) continue;
+      if (first) fmt::print("\nratios of median CPU times in this run (below 1: polhode is faster)\n");
+      first = false;
+      fmt::print("{:<75} {:.3f}\n", pair.what, ours->second / rival->second);
+    }
+  }
+
+ private:
+  std::map<std::string, double> median_;  ///< seconds per iteration
+};
+
+/// Every typed fixed-step method on every problem and formulation.
+void register_steps(std::vector<std::unique_ptr<TimedSolve>>& keep) {
+  for (ProblemEntry const* entry : all_problems())
+    for (std::string_view formulation : formulation_names())
+      for (IntegratorWord const& word : vocabulary().integrators) {
+        if (!word.fixed || !word.not_built.empty()) continue;
+        results::Cell cell;
+        cell.problem = entry->info().name;
+        cell.formulation = formulation;
+        cell.integrator = word.name;
+        cell.h = cell.problem == "tether_capture" ? 0.05 : step_size;
+        PreparedCell const prepared = prepare(cell);
+        auto solve = prepared.problem->timed(formulation, word.name, prepared.plan);
+        if (!solve) continue;
+        double const steps = prepared.cell.t_end / *cell.h;
+        std::string const name = fmt::format("step/{}/{}/{}", cell.problem, formulation, word.name);
+        benchmark::RegisterBenchmark(name.c_str(), [&solve = *solve, steps](benchmark::State& state) {
+          solve_cost(state, solve, steps);
+        })->Unit(benchmark::kMicrosecond);
+        keep.push_back(std::move(solve));
+      }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  for (int i = 1; i < argc; ++i) {
+    if (std::strcmp(argv[i], "--version") != 0) continue;
+    fmt::print("{}", version_text());
+    return 0;
+  }
+  std::vector<char*> arguments(argv, argv + argc);
+  // Before the user's own flags, so that these win.
+  std::string interleave = "--benchmark_enable_random_interleaving=true", repeat = "--benchmark_repetitions=9",
+              brief = "--benchmark_report_aggregates_only=true", short_time = "--benchmark_min_time=0.02";
+  arguments.insert(arguments.begin() + 1, {interleave.data(), repeat.data(), brief.data(), short_time.data()});
+  int count = int(arguments.size());
+  benchmark::Initialize(&count, arguments.data());
+  if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 2;
+
+  std::vector<std::unique_ptr<TimedSolve>> keep;
+  register_steps(keep);
+  benchmark::RegisterBenchmark("plain/free_body/odeint_rk4", plain_odeint_rk4)->Unit(benchmark::kMicrosecond);
+  Reporter reporter;
+  if (benchmark::RunSpecifiedBenchmarks(&reporter) == 0) {
+    std::fputs("polhode-bench: --benchmark_filter matches nothing\n", stderr);
+    return 3;
+  }
+  reporter.print_ratios();
+  return 0;
+}
