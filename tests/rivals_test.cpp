@@ -40,8 +40,8 @@ TEST_P(AdaptiveRival, CountsWhatItDoes) {
   EXPECT_LT(*record.evaluations, 20 * (*record.steps + *record.rejected));
   EXPECT_LE(*record.rejected, *record.steps);
   bool const newton = GetParam() == "cvode_bdf";
-  EXPECT_EQ(*record.jacobians > 0, newton);
-  EXPECT_EQ(*record.iterations >= *record.steps, newton || GetParam() == "cvode_adams");
+  EXPECT_EQ(record.jacobians.value_or(0) > 0, newton);
+  EXPECT_EQ(record.iterations.value_or(0) >= *record.steps, newton || GetParam() == "cvode_adams");
 }
 
 TEST_P(AdaptiveRival, CountersAddUpOverTheRestartsOfASampledLoop) {
