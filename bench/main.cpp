@@ -4,9 +4,9 @@
 #include <CLI/CLI.hpp>
 #include <cerrno>
 #include <cstdio>
-#include <cstring>
 #include <iostream>
 #include <new>
+#include <system_error>
 
 #include "bench/commands.hpp"
 #include "report/report.hpp"
@@ -59,7 +59,7 @@ std::string explain_extra(std::string const& word, CLI::App const& app, CLI::App
     for (CLI::Option const* option : verb.get_options())
       for (std::string const& name : option->get_lnames()) known.push_back("--" + name);
     std::string const flag = word.substr(0, word.find('='));
-    std::string const meant = bench::nearest(flag, known);
+    std::string const meant = flag.starts_with("--") ? bench::nearest(flag, known) : "";
     return "unknown flag " + bench::quote(flag) + (meant.empty() ? "" : "; did you mean '" + meant + "'?");
   }
   if (&verb != &app) return "unexpected argument " + bench::quote(word);
@@ -85,11 +85,15 @@ std::string explain(CLI::ParseError const& error, CLI::App const& app) {
   return text + " (see `polhode " + (chosen.empty() ? "" : verb.get_name() + " ") + "--help`)";
 }
 
+int complain_of_output(std::error_code const& reason) {
+  return complain(exit_bad_file, "standard output: cannot be written: " + reason.message());
+}
+
 /// The exit code, once everything is out: a full disk must not pass for success.
 int finish(int code) {
   std::cout.flush();
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout) return code;
-  return complain(exit_bad_file, fmt::format("standard output: cannot be written: {}", std::strerror(errno)));
+  return complain_of_output({errno, std::generic_category()});
 }
 
 }  // namespace
@@ -117,6 +121,8 @@ int main(int argc, char** argv) {
     return complain(exit_nothing_selected, error.what());
   } catch (std::bad_alloc const&) {
     return complain(exit_run_failed, "out of memory");
+  } catch (std::system_error const& error) {
+    return std::ferror(stdout) != 0 ? complain_of_output(error.code()) : complain(exit_bad_file, error.what());
   } catch (std::exception const& error) {  // files: suites, records, references, reports
     return complain(exit_bad_file, error.what());
   }
