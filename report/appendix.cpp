@@ -10,8 +10,41 @@ namespace polhode::report {
 
 using results::Record;
 
+namespace {
+
+/// The values that the files give to a name, each once: "AMD EPYC" or "A and B"; empty if none does.
+std::string meta_of(Facts const& facts, std::string const& name) {
+  std::set<std::string> values;
+  for (results::Meta const& meta : facts.contents.metas) {
+    if (auto const found = meta.find(name); found != meta.end() && !found->second.empty()) values.insert(found->second);
+  }
+  return listed({values.begin(), values.end()});
+}
+
+}  // namespace
+
+std::string timing_note(Facts const& facts) {
+  std::set<int> repetitions;
+  for (Record const* run : facts.runs) {
+    if (run->cpu_time_s) repetitions.insert(run->cpu_time_s->repetitions);
+  }
+  if (repetitions.empty()) return "Nothing was timed.";
+  std::string machine = meta_of(facts, "cpu_model");
+  if (machine.empty()) machine = "a machine that the records do not name";
+  if (auto const cpus = meta_of(facts, "cpus_available"); !cpus.empty()) machine += fmt::format(", CPUs: {}", cpus);
+  if (meta_of(facts, "virtualised") == "true") machine += ", virtualised";
+  if (auto const load = meta_of(facts, "load"); !load.empty()) {
+    machine += fmt::format(", load {}", load.substr(0, load.find(' ')));
+  }
+  if (auto const compiler = meta_of(facts, "compiler"); !compiler.empty()) machine += fmt::format("; {}", compiler);
+  if (auto const flags = meta_of(facts, "flags"); !flags.empty()) machine += fmt::format(" {}", flags);
+  int const low = *repetitions.begin(), high = *repetitions.rbegin();
+  return fmt::format("CPU times: medians of {} interleaved repetitions, their 95% intervals in the CSV file; on {}.",
+                     low == high ? std::to_string(low) : fmt::format("{} to {}", low, high), machine);
+}
+
 void add_failures(Document& document, Facts const& facts) {
-  document.heading(2, "7. Failures and refusals");
+  document.heading(2, "10. Failures and refusals");
   // status, reason, problem, method -> step sizes and tolerances
   std::map<std::tuple<std::string, std::string, std::string, std::string>, std::vector<std::string>> groups;
   std::size_t n = 0;
@@ -50,7 +83,7 @@ void add_failures(Document& document, Facts const& facts) {
 }
 
 void add_references(Document& document, Facts const& facts) {
-  document.heading(2, "8. References and provenance");
+  document.heading(2, "11. References and provenance");
   std::map<std::pair<std::string, std::optional<double>>, std::pair<std::set<std::string>, std::size_t>> uses;
   std::size_t without = 0;
   for (Instance const& instance : facts.instances) {

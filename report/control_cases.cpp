@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "report/sections.hpp"
 #include "report/text.hpp"
@@ -11,6 +12,7 @@
 namespace polhode::report {
 namespace {
 
+using results::Cell;
 using results::Record;
 using results::Series;
 
@@ -28,10 +30,15 @@ std::string label_without(std::string label, std::string_view word) {
   return label.erase(at, length);
 }
 
+/// What stands before the parameters and the horizon: "tether_capture g1".
+std::string_view without_parameters(std::string_view label) {
+  return label.substr(0, label.find(", "));
+}
+
 bool is_better(Facts const& facts, Record const& a, Record const& b) {
   auto const merit = [&](Record const& run) {
     double const error = finite(run.attitude_error_max).value_or(INFINITY);
-    return std::pair(facts.series_of(run, "history") == nullptr, error);
+    return std::tuple(facts.series_of(run, "history") == nullptr, run.claims.empty(), error);
   };
   return merit(a) < merit(b);
 }
@@ -67,12 +74,16 @@ class Histories {
 
   bool empty() const { return shown_.empty(); }
 
+  /// "gauss2 (quaternion), h = 0.1 s", or what each case was run with.
   std::string sources() const {
     std::vector<std::string> words;
+    std::set<std::string> runs;
     for (Shown const& s : shown_) {
-      words.push_back(fmt::format("{}: {}, {}", s.label, method_of(s.run->of), control_of(s.run->of)));
+      std::string const run = fmt::format("{}, {}", method_of(s.run->of), control_of(s.run->of));
+      runs.insert(run);
+      words.push_back(fmt::format("{}: {}", s.label, run));
     }
-    return fmt::format("{}", fmt::join(words, "; "));
+    return runs.size() == 1 ? *runs.begin() : fmt::format("{}", fmt::join(words, "; "));
   }
 
   /// A column against time, scaled to the unit of the label.
@@ -115,8 +126,8 @@ class Histories {
     if (panel.curves.empty()) return panel;
     std::array<double, 3> const target{-arm, 0, 0};
     Point const start = panel.curves.front().points.front();
-    panel.curves.push_back({"start", {.index = 3, .line = false}, {start}});
-    panel.curves.push_back({"target", {.index = 6, .open = true, .line = false}, {{target[across], target[up]}}});
+    panel.curves.push_back({"start", {.index = 4, .line = false}, {start}});
+    panel.curves.push_back({"target", {.index = 10, .open = true, .line = false}, {{target[across], target[up]}}});
     return panel;
   }
 
@@ -146,7 +157,10 @@ class Histories {
   /// Each case has its own dash too: where two coincide both are seen.
   static Style style_of(Shown const& s) {
     static constexpr std::array dashes{Dash::solid, Dash::dashed, Dash::dotted};
-    return {.index = s.index, .dash = dashes[static_cast<std::size_t>(s.index)], .points = false};
+    static constexpr std::array colours{3, 12, 2};
+    return {.index = colours[static_cast<std::size_t>(s.index)],
+            .dash = dashes[static_cast<std::size_t>(s.index)],
+            .points = false};
   }
 
   /// First column of R(q) times -arm; q is scalar last and need not be exactly of length one.
@@ -164,11 +178,15 @@ class Histories {
 std::vector<CaseRuns> case_runs(Facts const& facts) {
   std::map<std::string, CaseRuns> groups;
   for (Instance const& instance : facts.instances) {
-    if (instance.like().problem != "tether_capture") continue;
+    Cell const& c = instance.like();
+    // tied to the step, the sample period is not the problem's
+    if (c.problem != "tether_capture" || has_word(c.variant, "coupled")) continue;
     for (auto const name : control_cases) {
       if (!has_word(instance.like().variant, name)) continue;
       std::string const label = label_without(instance.label, name);
-      CaseRuns& group = groups.try_emplace(label, CaseRuns{label, {}}).first->second;
+      CaseRuns& group = groups.try_emplace(label, CaseRuns{label, "", {}}).first->second;
+      group.title = without_word(c.variant, name);
+      std::ranges::replace(group.title, ',', ' ');
       for (Record const* run : instance.runs) {
         if (!is_ok(*run)) continue;
         auto const [at, is_new] = group.of.try_emplace(std::string(name), run);
@@ -180,16 +198,21 @@ std::vector<CaseRuns> case_runs(Facts const& facts) {
   for (auto& [label, group] : groups) {
     if (!group.of.empty()) list.push_back(std::move(group));
   }
+  // a short name that is not unique says too little
+  for (CaseRuns& a : list) {
+    auto const same = [&](CaseRuns const& b) { return without_parameters(a.label) == without_parameters(b.label); };
+    if (a.title.empty() || std::ranges::count_if(list, same) > 1) a.title = a.label;
+  }
+  // the nominal sign first
+  std::ranges::stable_sort(list, {}, [](CaseRuns const& c) { return c.label.find("as_printed") != std::string::npos; });
   return list;
 }
 
 void add_control_cases(Document& document, Facts const& facts) {
-  document.heading(2, "4. The three control strategies");
+  document.heading(2, "5. The three control strategies");
   document.say(
       "The paper's figures 4 to 7: tether and thruster together (case 1), thruster below 5 deg and tether above "
-      "(case 2), thruster alone (case 3). Each curve is the most accurate run that left a history. The "
-      "paper prints no gains: g1 and g2 are reconstructions. Variant as_printed has the gyroscopic term with the "
-      "sign that the paper prints.");
+      "(case 2), thruster alone (case 3). Each curve is the most accurate run that left a history.");
   std::size_t n = 0;
   for (CaseRuns const& cases : case_runs(facts)) {
     Histories const histories(facts, cases, n + 1);

@@ -46,7 +46,8 @@ struct Entry {
 
 struct Column {
   std::string title;
-  bool number = false;  ///< aligned to the right
+  bool number = false;    ///< aligned to the right
+  bool csv_only = false;  ///< in the CSV file alone
 };
 
 struct Table {
@@ -70,6 +71,7 @@ struct Style {
   bool open = false;   ///< open symbols instead of filled ones
   bool points = true;  ///< symbols at the points; a densely sampled history has none
   bool line = true;
+  int every = 1;  ///< a symbol at each so many points
 };
 
 struct Curve {
@@ -81,12 +83,15 @@ struct Curve {
 struct Axis {
   std::string label;
   bool log = false;
+  double least = 0;  ///< nothing below is shown, on a logarithmic axis
 };
 
 struct Panel {
   Axis x, y;
   std::vector<Curve> curves;
   bool equal_scale = false;  ///< one metre is as long in x as in y
+  double rounding = 0;       ///< y below which the picture is shaded: rounding rules there
+  std::string title = {};    ///< above the panel
 };
 
 struct Figure {
@@ -95,6 +100,7 @@ struct Figure {
   std::vector<Panel> panels;
   int columns = 1;                 ///< panels beside each other
   bool same_y = false;             ///< all panels have the same range of y
+  bool poster = false;             ///< large type, thick lines, and a legend under each panel: to be shown alone
   std::optional<std::string> svg;  ///< what gnuplot drew; absent if it could not
   std::string why_not;             ///< why there is no picture
 };
@@ -111,6 +117,10 @@ struct Document {
   void add(Figure figure) { blocks.emplace_back(std::move(figure)); }
 };
 
+/// True if that column is for the CSV file alone.
+inline bool is_hidden(Table const& table, std::size_t column) {
+  return column < table.columns.size() && table.columns[column].csv_only;
+}
 /// True if there is something to draw.
 bool has_points(Figure const& figure);
 

@@ -84,16 +84,15 @@ Table drift_table(Instance const& instance, Rows const& rows, std::size_t n) {
   return table;
 }
 
-/// The step at which most methods left a history; among equals the one nearest 0.1 s, in logarithms.
-std::optional<double> common_step(Facts const& facts, Instance const& instance) {
-  std::map<double, int> count;
+/// The step whose histories are drawn.
+std::optional<double> drawn_step(Facts const& facts, Instance const& instance) {
+  std::map<double, std::set<std::string>> methods;
   for (Record const* run : instance.runs) {
-    if (run->of.h && run->of.formulation == "quaternion" && facts.series_of(*run, "drift")) ++count[*run->of.h];
+    if (run->of.h && run->of.formulation == "quaternion" && facts.series_of(*run, "drift")) {
+      methods[*run->of.h].insert(method_of(run->of));
+    }
   }
-  auto const merit = [](auto const& item) { return std::pair(item.second, -std::abs(std::log10(item.first / 0.1))); };
-  auto const best = std::ranges::max_element(count, {}, merit);
-  if (best == count.end()) return {};
-  return best->first;
+  return common_step(methods);
 }
 
 /// The largest value in each of many equal shares of log t: no peak is lost, and the picture stays small.
@@ -117,7 +116,7 @@ Figure drift_figure(Facts const& facts, Instance const& instance, std::size_t n)
   Figure figure;
   figure.name = fmt::format("drift-{}", n);
   figure.same_y = true;
-  auto const h = common_step(facts, instance);
+  auto const h = drawn_step(facts, instance);
   if (!h) return figure;
   std::map<std::string, Panel> panels;  // by policy; "none" comes before "project"
   for (Sweep const& sweep : instance.sweeps()) {
@@ -128,20 +127,21 @@ Figure drift_figure(Facts const& facts, Instance const& instance, std::size_t n)
       Cell plain = c;
       plain.policy = "none";  // the panel tells the policy
       Style style = facts.style_of(plain);
-      style.points = false;
       std::vector<Point> points = thinned(*series, "norm_drift");
+      style.every = std::max(1, static_cast<int>(points.size()) / 10);
       if (!points.empty()) panels[c.policy].curves.push_back({c.integrator, style, std::move(points)});
     }
   }
   for (auto& [policy, panel] : panels) {
     panel.x = {"t [s]", true};
-    panel.y = {fmt::format("|q.q - 1| delivered, policy {}", policy), true};
+    panel.y = {"|q.q - 1|, delivered", true};
+    panel.title = fmt::format("policy {}", policy);
     figure.panels.push_back(std::move(panel));
   }
   figure.columns = static_cast<int>(std::clamp<std::size_t>(figure.panels.size(), 1, 2));
   figure.caption = fmt::format(
       "{}: norm drift against time at h = {} s, the largest value in each short interval, for each "
-      "norm policy. Exact zeros are drawn at 1e-17. Dashed: rivals.",
+      "norm policy. Exact zeros are drawn at 1e-17.",
       instance.label, significant(*h, 4));
   return figure;
 }
@@ -157,10 +157,17 @@ void add_drift(Document& document, Facts const& facts) {
       "round-off. A visible drift then comes from elsewhere: initial data that are not normalised (variant raw_q0), a "
       "fixed small number of sweeps (gauss2_sweeps1, gauss2_sweeps2) or a loose stopping tolerance (gauss2_tol6).");
   std::size_t n = 0;
+  std::vector<std::string> single;
   for (Instance const& instance : facts.instances) {
     if (!is_free_motion(instance)) continue;
     Rows const rows = rows_of(instance);
-    if (rows.empty()) continue;
+    if (rows.empty() || is_aside(instance.like())) continue;
+    if (rows.size() == 1 && rows.begin()->second.size() == 1) {
+      Record const& run = *rows.begin()->second.begin()->second;
+      single.push_back(fmt::format("{}: at most {} with {} at {}", instance.label, number(run.norm_drift_max, 2).text,
+                                   method_of(run.of), control_of(run.of)));
+      continue;
+    }
     ++n;
     document.heading(3, instance.label);
     document.add(drift_table(instance, rows, n));
@@ -171,7 +178,8 @@ void add_drift(Document& document, Facts const& facts) {
       document.say("No history of the drift was recorded for this motion, so there is no figure of it against time.");
     }
   }
-  if (n == 0)
+  if (!single.empty()) document.say(fmt::format("Single runs: {}.", fmt::join(single, "; ")));
+  if (n == 0 && single.empty())
     document.say("The records hold no run of tether_capture's variant free in quaternions, so there is no table.");
 }
 

@@ -91,6 +91,17 @@ std::optional<Cost> cheapest(Sweep const& sweep, double target, Measure measure)
   return best;
 }
 
+/// Place of an instance in every list; what is set or aside comes after what is asked.
+std::size_t rank_of(Cell const& c) {
+  std::size_t rank = 0;
+  for (Headline const& h : headlines) {
+    bool const there = c.problem == h.problem && (h.word.empty() || has_word(c.variant, h.word));
+    if (there && c.set.empty() && !is_aside(c)) return rank;
+    ++rank;
+  }
+  return rank;
+}
+
 /// Two-sided 95% quantile of Student's t.
 double student(std::size_t freedom) {
   static constexpr double table[] = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228};
@@ -163,6 +174,21 @@ std::vector<Sweep> Instance::sweeps() const {
   return sorted;
 }
 
+bool Instance::comparable() const {
+  std::set<std::string> integrators;
+  for (Sweep const& sweep : sweeps()) {
+    auto const scored = std::ranges::count_if(
+        sweep.runs, [](Record const* run) { return is_ok(*run) && finite(run->attitude_error_max); });
+    if (scored > 0) integrators.insert(sweep.like().integrator);
+    if (scored >= 3) return true;
+  }
+  return integrators.size() >= 2;
+}
+
+bool is_aside(Cell const& cell) {
+  return has_word(cell.variant, "coupled") || has_word(cell.variant, "as_printed");
+}
+
 std::vector<Cost> ranking(Instance const& instance, double target, Measure measure) {
   std::map<std::string, Cost> best;
   for (Sweep const& sweep : instance.sweeps()) {
@@ -181,6 +207,18 @@ Measure measure_of(Instance const& instance) {
   bool const timed = std::ranges::any_of(
       instance.runs, [](Record const* run) { return is_ok(*run) && price_of(*run, Measure::time).has_value(); });
   return timed ? Measure::time : Measure::evaluations;
+}
+
+std::optional<double> common_step(std::map<double, std::set<std::string>> const& methods) {
+  std::size_t most = 0;
+  for (auto const& [h, names] : methods) most = std::max(most, names.size());
+  std::optional<double> best;
+  auto const distance = [](double h) { return std::abs(std::log10(h / 0.1)); };
+  for (auto const& [h, names] : methods) {
+    bool const shared = names.size() == most || (most > 2 && names.size() + 1 == most);
+    if (shared && (!best || distance(h) < distance(*best))) best = h;
+  }
+  return best;
 }
 
 std::optional<Order> fit_order(std::vector<std::pair<double, double>> const& points) {
@@ -225,7 +263,7 @@ Facts::Facts(results::Contents const& all) : contents(all) {
     instances[place->second].runs.push_back(run);
     integrators.emplace(is_rival(run->of.integrator), run->of.integrator);
   }
-  std::ranges::stable_sort(instances, {}, &Instance::label);
+  std::ranges::stable_sort(instances, {}, [](Instance const& i) { return std::pair(rank_of(i.like()), i.label); });
   for (auto const& [rival, name] : integrators) styles_.emplace(name, static_cast<int>(styles_.size()));
   for (results::Series const& series : all.series) series_[{series.cell, series.name}] = &series;
 }
@@ -235,14 +273,20 @@ results::Series const* Facts::series_of(Record const& run, std::string_view name
   return found == series_.end() ? nullptr : found->second;
 }
 
+Instance const* Facts::headline(Headline const& which) const {
+  auto const at = static_cast<std::size_t>(&which - headlines);
+  auto const found = std::ranges::find_if(instances, [&](Instance const& i) { return rank_of(i.like()) == at; });
+  return found == instances.end() ? nullptr : &*found;
+}
+
 Style Facts::style_of(Cell const& cell) const {
   auto const found = styles_.find(cell.integrator);
-  bool const rival = is_rival(cell.integrator), policy = cell.policy != "none";
+  bool const adaptive = !cell.h, policy = cell.policy != "none";
   return {.index = found == styles_.end() ? 0 : found->second,
-          .dash = rival    ? (policy ? Dash::dash_dot : Dash::dashed)
+          .dash = adaptive ? (policy ? Dash::dash_dot : Dash::dashed)
                   : policy ? Dash::dotted
                            : Dash::solid,
-          .open = rival};
+          .open = is_rival(cell.integrator)};
 }
 
 std::optional<std::size_t> column_of(results::Series const& series, std::string_view name) {

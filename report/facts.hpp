@@ -3,6 +3,7 @@
 /// which cost. Nothing here writes text for a reader except names.
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -46,7 +47,13 @@ struct Instance {
 
   results::Cell const& like() const { return runs.front()->of; }
   std::vector<Sweep> sweeps() const;  ///< own methods first
+  /// True if there is something to compare: two integrators with an error, or three steps or tolerances of one.
+  bool comparable() const;
 };
+
+/// True for the variants that are another problem than the one they are scored against (`coupled`), or a misprint
+/// (`as_printed`): each has its own section and no part in any ranking.
+bool is_aside(results::Cell const& cell);
 
 /// What cost is counted in.
 enum class Measure { time, evaluations };
@@ -64,6 +71,10 @@ std::vector<Cost> ranking(Instance const& instance, double target, Measure measu
 /// Time if some run of the instance was timed, otherwise evaluations.
 Measure measure_of(Instance const& instance);
 
+/// The step at which to compare, from the methods that were run with each: nearest 0.1 s, in logarithms, among those
+/// that all methods but one at most, of the best covered step, share.
+std::optional<double> common_step(std::map<double, std::set<std::string>> const& methods);
+
 /// A measured order: least squares of log(error) on log(h).
 struct Order {
   double slope = 0;
@@ -74,6 +85,15 @@ struct Order {
 /// The fit through (h, error), all positive; absent with fewer than two different h.
 std::optional<Order> fit_order(std::vector<std::pair<double, double>> const& points);
 
+/// What the report's question is first asked of: motion without control, a smooth closed loop, sampled control.
+struct Headline {
+  std::string_view problem, word;  ///< and a word of its variant, if it has variants
+  std::string_view words;          ///< what it is
+};
+inline constexpr Headline headlines[] = {{"free_body", "", "free motion"},
+                                         {"pd_slew", "", "the smooth loop"},
+                                         {"tether_capture", "case1", "sampled control"}};
+
 /// All records, one per cell.
 class Facts {
  public:
@@ -81,12 +101,15 @@ class Facts {
 
   results::Contents const& contents;
   std::vector<results::Record const*> runs;  ///< of every status; a cell run by several builds counts once, the last
-  std::vector<Instance> instances;
-  std::size_t superseded = 0;  ///< records that a later build replaced
+  std::vector<Instance> instances;           ///< the headlines first, then by name
+  std::size_t superseded = 0;                ///< records that a later build replaced
 
   /// The series of that name that belongs to the run, or null.
   results::Series const* series_of(results::Record const& run, std::string_view name) const;
-  /// How a method looks in every figure: colour and symbol by integrator; rivals open and dashed, a norm policy dotted.
+  /// The instance of a headline with the problem's default parameters, or null.
+  Instance const* headline(Headline const& which) const;
+  /// How a method looks in every figure: colour and symbol by integrator, open for rivals; adaptive runs are dashed, a
+  /// norm policy is dotted.
   Style style_of(results::Cell const& cell) const;
 
  private:

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <span>
 #include <sstream>
 
 #include "report/render.hpp"
@@ -20,18 +21,22 @@ extern char** environ;
 namespace polhode::report {
 namespace {
 
-/// Okabe and Ito's colours without the yellow, which is lost on white: told apart by the colour-blind.
-constexpr std::array<char const*, 7> colours{"#0072B2", "#D55E00", "#009E73", "#CC79A7",
-                                             "#56B4E9", "#E69F00", "#000000"};
-/// gnuplot's point types, filled and open: circle, square, triangle up, triangle down, diamond, pentagon. A palette of
-/// 7 and 6 symbols repeat together only after 42 curves.
-constexpr std::array<int, 6> filled{7, 5, 9, 11, 13, 15};
+/// Okabe and Ito's colours without the yellow, which is lost on white, and darker ones of Tol's. Sixteen colours alone
+/// cannot be told apart by the colour-blind: symbols help, and dashes.
+constexpr std::array<char const*, 16> colours{"#56B4E9", "#E69F00", "#009E73", "#0072B2", "#000000", "#8C510A",
+                                              "#CC79A7", "#882255", "#999933", "#332288", "#CC3311", "#117733",
+                                              "#D55E00", "#44AA99", "#AA4499", "#6B6BD6"};
+/// gnuplot's point types: circle, square, triangles up and down, diamond, pentagon; x, + and * have no inside. Colour
+/// and symbol repeat together only after 144 curves, or 48 open ones.
+constexpr std::array<int, 9> filled{7, 5, 9, 11, 13, 15, 2, 1, 3};
 constexpr std::array<int, 6> open{6, 4, 8, 10, 12, 14};
 constexpr char const* grey = "#9A9A9A";
 
 // The layout, in pixels.
 constexpr double plot_width = 300, wide_plot_width = 560, plot_height = 300, low_plot_height = 170;
-constexpr double left = 84, right = 18, top = 16, bottom = 54, letter = 7.6, key_line = 22.5;
+constexpr double left = 84, right = 18, top = 16, bottom = 54, title_height = 20, letter = 7.6, key_line = 22.5;
+constexpr double poster_width = 1000, poster_height = 420, poster_left = 96, poster_right = 22, poster_top = 46,
+                 poster_bottom = 146, poster_key = 84;
 
 /// A gnuplot string. In single quotes nothing is expanded: no backticks, no macros, no escapes.
 std::string in_quotes(std::string_view raw) {
@@ -93,8 +98,10 @@ std::string axis_commands(char name, Axis const& axis, Range range) {
                      "set {0}range [{1}:{2}]\n",
                      name, range.low - spare, range.high + spare);
   }
+  if (range.high > axis.least) range.low = std::max(range.low, axis.least);
   // A point on the frame would be cut in half; and with fewer than two decades labelled nobody could read the scale.
-  double low = std::log10(range.low) - 0.15, high = std::log10(range.high) + 0.15;
+  double const spare = std::max(0.15, 0.03 * std::log10(range.high / range.low));
+  double low = std::log10(range.low) - spare, high = std::log10(range.high) + spare;
   if (std::floor(high) - std::ceil(low) < 1) {
     low = std::floor(low);
     high = std::max(low + 1, std::ceil(high));
@@ -106,15 +113,15 @@ std::string axis_commands(char name, Axis const& axis, Range range) {
                    name, first, step, last, step > 1 ? step : 10, std::pow(10, low), std::pow(10, high));
 }
 
-std::string line_look(Style const& style) {
-  return fmt::format("lw 1.8 dt {} lc rgb '{}'", static_cast<int>(style.dash) + 1,
+std::string line_look(Style const& style, bool poster) {
+  return fmt::format("lw {} dt {} lc rgb '{}'", poster ? 2.6 : 1.8, static_cast<int>(style.dash) + 1,
                      colours[static_cast<std::size_t>(style.index) % colours.size()]);
 }
 
-std::string point_look(Style const& style, bool is_grey) {
-  auto const& set = style.open ? open : filled;
+std::string point_look(Style const& style, bool is_grey, bool poster) {
   auto const index = static_cast<std::size_t>(style.index);
-  return fmt::format("pt {} ps 0.7 lw 1.3 lc rgb '{}'", set[index % set.size()],
+  int const symbol = style.open ? open[index % open.size()] : filled[index % filled.size()];
+  return fmt::format("pt {} ps {} lw {} lc rgb '{}'", symbol, poster ? 0.9 : 0.7, poster ? 2.0 : 1.3,
                      is_grey ? grey : colours[index % colours.size()]);
 }
 
@@ -143,38 +150,104 @@ struct Legend {
 };
 
 /// One entry for each label, though a curve may appear in every panel.
-Legend legend_of(Figure const& figure) {
+Legend legend_of(std::span<Panel const> panels, bool poster) {
   Legend legend;
   std::vector<std::string> seen;
   bool any_grey = false;
-  for (Panel const& panel : figure.panels) {
+  for (Panel const& panel : panels) {
     for (Curve const& curve : panel.curves) {
       any_grey = any_grey || has(panel, curve, 1);
       if (!has(panel, curve, -1) || std::ranges::find(seen, curve.label) != seen.end()) continue;
       seen.push_back(curve.label);
       Style const& style = curve.style;
       if (!style.points) {
-        legend.add("lines " + line_look(style), curve.label);
+        legend.add("lines " + line_look(style, poster), curve.label);
       } else if (!style.line) {
-        legend.add("points " + point_look(style, false), curve.label);
+        legend.add("points " + point_look(style, false, poster), curve.label);
       } else {
-        legend.add(fmt::format("linespoints dt {} {}", static_cast<int>(style.dash) + 1, point_look(style, false)),
-                   curve.label);
+        legend.add(
+            fmt::format("linespoints dt {} {}", static_cast<int>(style.dash) + 1, point_look(style, false, poster)),
+            curve.label);
       }
     }
   }
-  if (any_grey) legend.add("points " + point_look({}, true), "below the reference's bar");
+  if (any_grey) legend.add("points " + point_look({}, true, poster), "below the reference's bar");
   return legend;
 }
 
 /// The clauses that draw one curve: its line, its points, its grey points.
-void plot_clauses(std::vector<std::string>& out, std::string const& block, Panel const& panel, Curve const& curve) {
+void plot_clauses(std::vector<std::string>& out, std::string const& block, Panel const& panel, Curve const& curve,
+                  bool poster) {
   if (!has(panel, curve, -1)) return;
-  if (curve.style.line) out.push_back(fmt::format("{} with lines {} notitle", block, line_look(curve.style)));
+  if (curve.style.line) out.push_back(fmt::format("{} with lines {} notitle", block, line_look(curve.style, poster)));
   for (int const mark : {0, 1}) {
     if (!curve.style.points || !has(panel, curve, mark)) continue;
-    out.push_back(fmt::format("{}_{} with points {} notitle", block, mark, point_look(curve.style, mark == 1)));
+    out.push_back(fmt::format("{}_{} every {}::{} with points {} notitle", block, mark, curve.style.every,
+                              curve.style.index % curve.style.every, point_look(curve.style, mark == 1, poster)));
   }
+}
+
+/// The part of the panel where rounding rules, in light grey.
+std::string shade(Panel const& panel, Range y) {
+  if (!panel.y.log || panel.rounding <= std::max(y.low, panel.y.least)) return "unset object\n";
+  return fmt::format(
+      "set object 1 rectangle from graph 0, graph 0 to graph 1, first {} behind fillcolor rgb '#EFEFEC' "
+      "fillstyle solid noborder\n",
+      std::min(panel.rounding, y.high * 1.4));
+}
+
+/// Where things are, as shares of the picture.
+struct Layout {
+  double width = 0, height = 0;
+  struct Box {
+    double left, right, bottom, top;
+  };
+  std::vector<Box> boxes;            ///< of each panel's frame
+  std::vector<std::string> legends;  ///< of each panel: gnuplot's `set key`; of most, none
+};
+
+/// Panels in rows; the legend stands to their right, or in the place that they leave free.
+Layout rows_of_panels(Figure const& figure, Legend const& legend, std::size_t last_drawn) {
+  int const columns = std::max(1, figure.columns);
+  int const rows = (static_cast<int>(figure.panels.size()) + columns - 1) / columns;
+  double const cell_width = (columns == 1 ? wide_plot_width : plot_width) + left + right;
+  bool const titled = std::ranges::any_of(figure.panels, [](Panel const& panel) { return !panel.title.empty(); });
+  double const above = top + (titled ? title_height : 0);
+  double const cell_height = (rows > 2 ? low_plot_height : plot_height) + above + bottom;
+  int const in_last_row = static_cast<int>(figure.panels.size()) % columns;
+  double const key_x = (in_last_row > 0 ? in_last_row : columns) * cell_width + (in_last_row > 0 ? left : 4);
+  double const key_y = (in_last_row > 0 ? (rows - 1) * cell_height : 0) + above;
+  Layout at;
+  at.width = std::max(columns * cell_width, key_x + 60 + letter * static_cast<double>(legend.longest));
+  at.height = std::max(rows * cell_height, key_y + key_line * (static_cast<double>(legend.entries.size()) + 1));
+  for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+    double const x = static_cast<double>(static_cast<int>(i) % columns) * cell_width;
+    double const y = at.height - static_cast<double>(static_cast<int>(i) / columns + 1) * cell_height;
+    at.boxes.push_back({(x + left) / at.width, (x + cell_width - right) / at.width, (y + bottom) / at.height,
+                        (y + cell_height - above) / at.height});
+    at.legends.emplace_back();
+  }
+  at.legends[last_drawn] = fmt::format(
+      "set key at screen {}, screen {} left top vertical Left reverse noenhanced samplen 2.5 spacing 1.15 textcolor "
+      "rgb '#333333'\n",
+      key_x / at.width, 1 - key_y / at.height);
+  return at;
+}
+
+/// Panels beside each other, each with its legend below.
+Layout poster(Figure const& figure) {
+  Layout at{poster_width, poster_height, {}, {}};
+  auto const n = static_cast<double>(figure.panels.size());
+  for (std::size_t i = 0; i < figure.panels.size(); ++i) {
+    double const x = static_cast<double>(i) / n, next = static_cast<double>(i + 1) / n;
+    at.boxes.push_back({x + poster_left / at.width, next - poster_right / at.width, poster_bottom / at.height,
+                        1 - poster_top / at.height});
+    at.legends.push_back(
+        fmt::format("set key at screen {}, screen {} left top vertical maxrows {} Left reverse noenhanced samplen 2 "
+                    "spacing 1.1 width -3 textcolor rgb '#333333'\n",
+                    x + 30 / at.width, poster_key / at.height, figure.panels[i].curves.size() > 4 ? 3 : 2));
+  }
+  return at;
 }
 
 std::string joined(std::vector<std::string> const& clauses) {
@@ -209,19 +282,6 @@ std::string run_gnuplot(std::string const& name, std::filesystem::path const& fo
 }  // namespace
 
 std::string gnuplot_script(Figure const& figure) {
-  int const columns = std::max(1, figure.columns);
-  int const rows = (static_cast<int>(figure.panels.size()) + columns - 1) / columns;
-  double const cell_width = (columns == 1 ? wide_plot_width : plot_width) + left + right;
-  double const cell_height = (rows > 2 ? low_plot_height : plot_height) + top + bottom;
-  Legend const legend = legend_of(figure);
-  // The legend stands to the right of the panels, or in the place that they leave free.
-  int const in_last_row = static_cast<int>(figure.panels.size()) % columns;
-  double const key_x = (in_last_row > 0 ? in_last_row : columns) * cell_width + (in_last_row > 0 ? left : 4);
-  double const key_y = (in_last_row > 0 ? (rows - 1) * cell_height : 0) + top;
-  double const width = std::max(columns * cell_width, key_x + 60 + letter * static_cast<double>(legend.longest));
-  double const height =
-      std::max(rows * cell_height, key_y + key_line * (static_cast<double>(legend.entries.size()) + 1));
-
   Range all_y;
   std::size_t last_drawn = 0;
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
@@ -231,6 +291,8 @@ std::string gnuplot_script(Figure const& figure) {
     all_y.include(y.low);
     all_y.include(y.high);
   }
+  Legend const common = legend_of(figure.panels, figure.poster);
+  Layout const at = figure.poster ? poster(figure) : rows_of_panels(figure, common, last_drawn);
   std::string data, plots;
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
     Panel const& panel = figure.panels[i];
@@ -242,35 +304,32 @@ std::string gnuplot_script(Figure const& figure) {
       for (int const mark : {0, 1}) {
         if (curve.style.points) data += data_block(fmt::format("{}_{}", block, mark), panel, curve, mark);
       }
-      plot_clauses(clauses, block, panel, curve);
+      plot_clauses(clauses, block, panel, curve, figure.poster);
     }
     if (clauses.empty()) continue;
     // gnuplot drops what it would have to draw below the panel that it draws the legend with: so take the lowest.
-    bool const last = i == last_drawn;
-    if (last) clauses.insert(clauses.end(), legend.entries.begin(), legend.entries.end());
-    Extent const extent(panel);
-    double const x0 = static_cast<double>(static_cast<int>(i) % columns) * cell_width;
-    double const y0 = height - static_cast<double>(static_cast<int>(i) / columns + 1) * cell_height;
-    plots += fmt::format("set lmargin at screen {}\nset rmargin at screen {}\n", (x0 + left) / width,
-                         (x0 + cell_width - right) / width);
-    plots += fmt::format("set bmargin at screen {}\nset tmargin at screen {}\n", (y0 + bottom) / height,
-                         (y0 + cell_height - top) / height);
-    plots += axis_commands('x', panel.x, extent.x);
-    plots += axis_commands('y', panel.y, figure.same_y ? all_y : extent.y);
-    plots += last ? fmt::format(
-                        "set key at screen {}, screen {} left top vertical Left reverse noenhanced samplen 2.5 "
-                        "spacing 1.15 textcolor rgb '#333333'\n",
-                        key_x / width, 1 - key_y / height)
-                  : "unset key\n";
+    if (!at.legends[i].empty()) {
+      Legend const own = figure.poster ? legend_of({&panel, 1}, true) : common;
+      clauses.insert(clauses.end(), own.entries.begin(), own.entries.end());
+    }
+    Range const x_range = Extent(panel).x, y_range = figure.same_y ? all_y : Extent(panel).y;
+    Layout::Box const& box = at.boxes[i];
+    plots += fmt::format("set lmargin at screen {}\nset rmargin at screen {}\n", box.left, box.right);
+    plots += fmt::format("set bmargin at screen {}\nset tmargin at screen {}\n", box.bottom, box.top);
+    plots += fmt::format("set title {} font ',{}' noenhanced\n", in_quotes(panel.title), figure.poster ? 17 : 13);
+    plots += axis_commands('x', panel.x, x_range) + axis_commands('y', panel.y, y_range) + shade(panel, y_range);
+    plots += at.legends[i].empty() ? "unset key\n" : at.legends[i];
     plots += "plot " + joined(clauses) + "\n";
   }
   return fmt::format(
       "# Draws {0}.svg: gnuplot {0}.gp\n{1}"
-      "set terminal svg size {2:.0f},{3:.0f} enhanced font 'sans-serif,13' background '#FDFDFC'\nset output '{0}.svg'\n"
+      "set terminal svg size {2:.0f},{3:.0f} enhanced font 'sans-serif,{5}' background '#FDFDFC'\n"
+      "set output '{0}.svg'\n"
       "set border 31 lc rgb '#555555'\nset tics textcolor rgb '#333333'\n"
-      "set grid xtics ytics lt 1 lw 0.6 lc rgb '#DDDDDD'\nset xlabel offset 0, 0.4\n"
+      "set grid xtics ytics lt 1 lw 0.6 lc rgb '#DDDDDD'\nset xlabel offset 0, 0.4\nset title offset 0, -0.4\nset "
+      "ylabel offset {6}, 0\n"
       "set multiplot\n{4}unset multiplot\nset output\n",
-      figure.name, data, width, height, plots);
+      figure.name, data, at.width, at.height, plots, figure.poster ? 15 : 13, figure.poster ? 1.5 : 0);
 }
 
 void draw(Figure& figure, std::filesystem::path const& folder) {

@@ -20,7 +20,7 @@ a { color: inherit; }
 figure { margin: 1.5rem 0; }
 figcaption { color: var(--quiet); font-size: .9rem; margin: .4rem 0; }
 .wide { overflow-x: auto; }
-.wide svg { display: block; min-width: 40rem; max-width: 100%; height: auto; border-radius: 6px; }
+.wide svg { display: block; max-width: 100%; height: auto; border-radius: 6px; }
 table { border-collapse: collapse; font-size: .9rem; font-variant-numeric: tabular-nums; }
 th, td { padding: .25rem .6rem; text-align: left; vertical-align: top; border-bottom: 1px solid var(--rule); }
 td { max-width: 28rem; }
@@ -62,12 +62,14 @@ std::string render(Table const& table) {
     return column < table.columns.size() && table.columns[column].number ? " class=\"number\"" : "";
   };
   for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    if (is_hidden(table, i)) continue;
     out += fmt::format("<th scope=\"col\"{}>{}</th>", attribute(i), escape_html(table.columns[i].title));
   }
   out += "</tr></thead>\n<tbody>\n";
   for (auto const& row : table.rows) {
     out += "<tr>";
     for (std::size_t i = 0; i < row.size(); ++i) {
+      if (is_hidden(table, i)) continue;
       out += fmt::format("<td{}>{}</td>", attribute(i), escape_html(row[i].text));
     }
     out += "</tr>\n";

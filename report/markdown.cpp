@@ -47,12 +47,18 @@ std::string render_entry(std::string_view text) {
 
 std::string render(Table const& table) {
   std::string out = fmt::format("**Table {}.** {}\n\n|", escape_markdown(table.name), render(table.caption));
-  for (Column const& column : table.columns) out += fmt::format(" {} |", render_entry(column.title));
+  for (Column const& column : table.columns) {
+    if (!column.csv_only) out += fmt::format(" {} |", render_entry(column.title));
+  }
   out += "\n|";
-  for (Column const& column : table.columns) out += column.number ? "---:|" : "---|";
+  for (Column const& column : table.columns) {
+    if (!column.csv_only) out += column.number ? "---:|" : "---|";
+  }
   for (auto const& row : table.rows) {
     out += "\n|";
-    for (Entry const& entry : row) out += fmt::format(" {} |", render_entry(entry.text));
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      if (!is_hidden(table, i)) out += fmt::format(" {} |", render_entry(row[i].text));
+    }
   }
   return out + fmt::format("\n\nFull precision: [tables/{0}.csv](tables/{0}.csv). Made by `polhode report DIR`.\n\n",
                            table.name);

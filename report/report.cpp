@@ -20,9 +20,12 @@ Document document_of(results::Contents const& contents) {
             {", DIR being the folder of results. Angles are in radians unless said otherwise, times in seconds."}}));
   add_answer(document, facts);
   add_drift(document, facts);
+  add_kept(document, facts);
   add_work_precision(document, facts);
   add_control_cases(document, facts);
   add_claims(document, facts);
+  add_erratum(document, facts);
+  add_sample_period(document, facts);
   add_orders(document, facts);
   add_failures(document, facts);
   add_references(document, facts);

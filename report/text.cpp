@@ -29,12 +29,12 @@ Entry number(std::optional<double> value, int digits) {
   return {significant(*value, digits), exact(*value)};
 }
 
-std::string duration(double seconds) {
+std::string duration(double seconds, int digits) {
   if (!std::isfinite(seconds)) return absent;
-  if (seconds < 1e-6) return significant(seconds * 1e9) + " ns";
-  if (seconds < 1e-3) return significant(seconds * 1e6) + " µs";
-  if (seconds < 1) return significant(seconds * 1e3) + " ms";
-  return significant(seconds) + " s";
+  if (seconds < 1e-6) return significant(seconds * 1e9, digits) + " ns";
+  if (seconds < 1e-3) return significant(seconds * 1e6, digits) + " µs";
+  if (seconds < 1) return significant(seconds * 1e3, digits) + " ms";
+  return significant(seconds, digits) + " s";
 }
 
 double degrees(double radians) {
@@ -49,13 +49,22 @@ std::string angle(double radians) {
   return fmt::format("{} rad ({} arcsec)", significant(radians), significant(arcseconds(radians)));
 }
 
-std::string listed(std::vector<std::string> const& words) {
+std::string listed(std::vector<std::string> const& words, std::string_view last) {
   std::string text;
   for (std::size_t i = 0; i < words.size(); ++i) {
-    if (i > 0) text += i + 1 == words.size() ? " and " : ", ";
+    if (i > 0) text += i + 1 == words.size() ? fmt::format(" {} ", last) : ", ";
     text += words[i];
   }
   return text;
+}
+
+std::string shortened(std::vector<std::string> words, std::size_t most) {
+  if (words.size() > most) {
+    std::size_t const others = words.size() - most + 1;
+    words.resize(most - 1);
+    words.push_back(fmt::format("{} others", others));
+  }
+  return listed(words);
 }
 
 std::string counted(std::size_t n, std::string_view singular, std::string_view plural) {

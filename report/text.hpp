@@ -19,7 +19,7 @@ std::string exact(double value);
 /// A table's entry: rounded to read, exact in the CSV file.
 Entry number(std::optional<double> value, int digits = 3);
 /// A CPU time in the unit that suits it, e.g. "12.3 us"; seconds in the CSV file.
-std::string duration(double seconds);
+std::string duration(double seconds, int digits = 3);
 
 double degrees(double radians);
 double arcseconds(double radians);
@@ -27,7 +27,9 @@ double arcseconds(double radians);
 std::string angle(double radians);
 
 /// "a", "a and b", "a, b and c".
-std::string listed(std::vector<std::string> const& words);
+std::string listed(std::vector<std::string> const& words, std::string_view last = "and");
+/// The same with at most so many words: "a, b and 7 others".
+std::string shortened(std::vector<std::string> words, std::size_t most);
 /// "1 run", "2 runs".
 std::string counted(std::size_t n, std::string_view singular, std::string_view plural);
 

@@ -13,20 +13,26 @@ namespace {
 using results::Cell;
 using results::Record;
 
+/// An attitude error that so few roundings make [rad] is not shown, and below the larger one the picture is shaded.
+constexpr double machine_precision = 1e-16, rounding = 1e-13;
 /// More lines than this in one picture cannot be told apart: it is split by formulation, then by policy.
 constexpr std::size_t most_lines = 14;
 
-std::string line_label(Cell const& c) {
-  std::string label = fmt::format("{}, {}", c.integrator, c.formulation);
+std::string line_label(Cell const& c, bool with_formulation) {
+  std::string label = c.integrator;
+  if (with_formulation) label += ", " + c.formulation;
   if (c.policy != "none") label += ", " + c.policy;
-  if (!c.h && !c.rtol) return label;
-  return label + (c.h ? "" : ", adaptive");
+  return label + (!c.h && c.rtol ? ", adaptive" : "");
 }
 
 /// The parts of an instance that get a picture each: (what they have in common, their sweeps).
 std::map<std::string, std::vector<Sweep>> parts_of(Instance const& instance) {
   std::map<std::string, std::vector<Sweep>> parts;
-  auto const all = instance.sweeps();
+  auto all = instance.sweeps();
+  std::erase_if(all, [](Sweep const& sweep) {
+    return std::ranges::none_of(sweep.runs,
+                                [](Record const* run) { return is_ok(*run) && finite(run->attitude_error_max); });
+  });
   if (all.size() <= most_lines) return {{"", all}};
   for (Sweep const& sweep : all) parts[sweep.like().formulation].push_back(sweep);
   bool const crowded = std::ranges::any_of(parts, [](auto const& part) { return part.second.size() > most_lines; });
@@ -41,11 +47,16 @@ std::map<std::string, std::vector<Sweep>> parts_of(Instance const& instance) {
 
 Panel panel_of(Facts const& facts, std::vector<Sweep> const& sweeps, Measure measure) {
   bool const timed = measure == Measure::time;
-  Panel panel{
-      .x = {timed ? "CPU time [s]" : "evaluations", true}, .y = {"attitude error, max [rad]", true}, .curves = {}};
+  Panel panel{.x = {timed ? "CPU time [s]" : "evaluations", true},
+              .y = {"attitude error, max [rad]", true, machine_precision},
+              .curves = {},
+              .rounding = rounding,
+              .title = ""};
+  bool const mixed = std::ranges::any_of(
+      sweeps, [&](Sweep const& sweep) { return sweep.like().formulation != sweeps.front().like().formulation; });
   for (Sweep const& sweep : sweeps) {
     Cell const& c = sweep.like();
-    Curve curve{line_label(c), facts.style_of(c), {}};
+    Curve curve{line_label(c, mixed), facts.style_of(c), {}};
     for (Record const* run : sweep.runs) {
       auto const error = finite(run->attitude_error_max);
       if (!is_ok(*run) || !error || *error <= 0) continue;
@@ -83,8 +94,8 @@ std::size_t add_figures(Document& document, Facts const& facts, Instance const& 
     }
     figure.columns = static_cast<int>(figure.panels.size());
     figure.caption = fmt::format(
-        "{}{}: attitude error against work. Lower left is better. Open symbols, dashed: rivals; "
-        "dotted: with a norm policy; grey: below the reference's bar.{}",
+        "{}{}: attitude error against work. Lower left is better. Open symbols: rivals; dashed: adaptive; dotted: with "
+        "a norm policy. The shade below 1e-13 rad is where rounding rules.{}",
         instance.label, part.empty() ? "" : ", " + part, missing);
     document.add(std::move(figure));
     ++n;
@@ -111,6 +122,8 @@ Table cheapest_table(Instance const& instance, Measure measure, std::size_t n) {
                           {"[arcsec]", true},
                           {"evaluations", true},
                           {"CPU time", true},
+                          {"low", true, true},
+                          {"high", true, true},
                           {"at the target", true},
                           {"times the best", true}},
               .rows = {}};
@@ -127,6 +140,8 @@ Table cheapest_table(Instance const& instance, Measure measure, std::size_t n) {
            control_of(run.of), number(run.attitude_error_max), number(arcseconds(*run.attitude_error_max)),
            evaluations ? Entry(std::to_string(*run.evaluations)) : Entry(absent),
            run.cpu_time_s ? Entry(duration(run.cpu_time_s->median), exact(run.cpu_time_s->median)) : Entry(absent),
+           run.cpu_time_s ? number(run.cpu_time_s->low) : Entry(absent),
+           run.cpu_time_s ? number(run.cpu_time_s->high) : Entry(absent),
            cost.interpolated ? Entry(shown(cost.value), exact(cost.value)) : Entry(absent),
            number(cost.value / costs.front().value)});
     }
@@ -137,17 +152,18 @@ Table cheapest_table(Instance const& instance, Measure measure, std::size_t n) {
 }  // namespace
 
 void add_work_precision(Document& document, Facts const& facts) {
-  document.heading(2, "3. Work and precision");
+  document.heading(2, "4. Work and precision");
   document.say(
       "Runs are compared at the error that was measured, never at the tolerance that was asked for. Only runs with "
       "status ok are ranked. A run that was not timed is ranked by its evaluations alone.");
+  document.say(timing_note(facts));
   std::size_t figures = 0, tables = 0;
-  std::vector<std::string> without_reference;
+  std::vector<std::string> single, without_reference;
   for (Instance const& instance : facts.instances) {
     bool const any = std::ranges::any_of(
         instance.runs, [](Record const* run) { return is_ok(*run) && finite(run->attitude_error_max); });
-    if (!any) {
-      without_reference.push_back(instance.label);
+    if (!any || !instance.comparable() || is_aside(instance.like())) {
+      (any ? single : without_reference).push_back(instance.label);
       continue;
     }
     document.heading(3, instance.label);
@@ -169,6 +185,11 @@ void add_work_precision(Document& document, Facts const& facts) {
       ++tables;
       document.add(std::move(by_work));
     }
+  }
+  if (!single.empty()) {
+    document.say(fmt::format("Not compared here, having single runs or a section of their own: {}.",
+                             single.size() > 3 ? fmt::format("{} other problems and variants", single.size())
+                                               : fmt::format("{}", fmt::join(single, "; "))));
   }
   if (!without_reference.empty()) {
     document.say(
