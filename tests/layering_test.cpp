@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
-#include <regex>
 #include <set>
 #include <sstream>
 #include <string>
@@ -46,15 +45,24 @@ bool may_include(std::string const& file, std::string const& included) {
   return allowed.at(layer_of(file)).contains(layer_of(included));
 }
 
-/// What a file includes by quotes, or by brackets from a layer of ours.
+/// The path of an include line: by quotes, or by brackets from a layer of ours. Empty for every other line.
+std::string included_by(std::string line) {
+  std::erase_if(line, [](char c) { return c == ' ' || c == '\t'; });
+  constexpr std::string_view directive = "#include";
+  if (!line.starts_with(directive)) return "";
+  line.erase(0, directive.size());
+  bool const quoted = line.starts_with('"');
+  std::size_t const end = line.find_first_of("\">", 1);
+  if (end == std::string::npos) return "";
+  std::string const path = line.substr(1, end - 1);
+  bool const ours = path.find('/') != std::string::npos && allowed.contains(layer_of(path));
+  return quoted || ours ? path : "";
+}
 std::vector<std::string> includes_of(std::string const& text) {
   std::vector<std::string> found;
-  static std::regex const line(R"(^[ \t]*#[ \t]*include[ \t]*(["<])([^">]+)[">])", std::regex::multiline);
-  for (auto it = std::sregex_iterator(text.begin(), text.end(), line); it != std::sregex_iterator(); ++it) {
-    std::string const path = (*it)[2];
-    bool const ours = path.find('/') != std::string::npos && allowed.contains(layer_of(path));
-    if ((*it)[1] == "\"" || ours) found.push_back(path);
-  }
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);)
+    if (std::string path = included_by(line); !path.empty()) found.push_back(std::move(path));
   return found;
 }
 
