@@ -13,9 +13,9 @@
 /// Errors: a few units of round-off times (1 + |L| t / least moment) [rad], no worse near the separatrix: what is small
 /// there is computed without cancellation, in Quad for double.
 ///
-/// Sources: Landau & Lifshitz, Mechanics, sec. 37 (rates: eqs. 37.8-10; angles by theta functions: 37.16-20);
-/// van Zon & Schofield (2007), J. Comput. Phys. 225, 145 (both as an algorithm, in angles that are singular when L is
-/// along the dominant axis); Celledoni, Faso, Safstrom & Zanna (2008), SIAM J. Sci. Comput. 30, 2084; DLMF 20, 22.
+/// Sources: Landau & Lifshitz, Mechanics, sec. 37 (rates, and the precession by theta functions);
+/// van Zon & Schofield (2007), J. Comput. Phys. 225, 145 (both as an algorithm);
+/// Celledoni, Faso, Safstrom & Zanna (2008), SIAM J. Sci. Comput. 30, 2084; DLMF 20, 22.
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -28,7 +28,7 @@ namespace polhode {
 /// The path of the angular momentum in body axes, as unit vector l(u), u = start + frequency t:
 ///   l_first = amplitude_1 cn(u | m),   l_middle = amplitude_2 sn(u | m),   l_dominant = amplitude_3 dn(u | m)
 /// The middle moment is between the others; L goes round the dominant axis (or, on the separatrix, turns over once).
-/// Source: Landau & Lifshitz, eqs. 37.8-10, in an order of axes that every branch shares
+/// Source: Landau & Lifshitz, Mechanics, sec. 37, in an order of axes that every branch shares
 template <Scalar S>
 struct Polhode {
   std::size_t first, middle, dominant;
@@ -86,8 +86,8 @@ struct Polhode {
 
  private:
   static S least(S const& a, S const& b) { return b < a ? b : a; }
-  /// J_middle (|L|^2 - 2 E J_middle) / ... : positive if L goes round the axis of the greatest moment, 0 on the
-  /// separatrix, where doubles cancel; so in Quad.
+  /// |L|^2 - 2 E J_middle: positive if L goes round the axis of the greatest moment, negative if round that of the
+  /// least, 0 on the separatrix. Near it doubles cancel, so it is found in Quad.
   static S above_separatrix(std::array<S, 3> const& J, std::array<S, 3> const& omega,
                             std::array<std::size_t, 3> const& order) {
     auto const [low, mid, high] = order;
@@ -245,7 +245,10 @@ class ExactFreeBody {
     S u = path_.start + path_.frequency * t;
     S const halves = jacobi_.half_periods(u);
     bool const odd = halves != S(2.0) * elliptic::nearest_integer(S(S(0.5) * halves));
-    u -= halves * (S(2.0) * jacobi_.quarter_period());
+    if (!jacobi_.endless()) {
+      S const quarter = jacobi_.quarter_period();
+      u = clamp(S(u - halves * (S(2.0) * quarter)), S(-quarter), quarter);
+    }
 
     elliptic::Sncndn<S> j;
     typename PrecessionWave<S>::Value wave;
