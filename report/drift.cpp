@@ -178,7 +178,7 @@ void add_drift(Document& document, Facts const& facts) {
       document.say("No history of the drift was recorded for this motion, so there is no figure of it against time.");
     }
   }
-  if (!single.empty()) document.say(fmt::format("Single runs: {}.", fmt::join(single, "; ")));
+  if (!single.empty()) document.say(fmt::format("Largest |q.q - 1| of single runs: {}.", fmt::join(single, "; ")));
   if (n == 0 && single.empty())
     document.say("The records hold no run of tether_capture's variant free in quaternions, so there is no table.");
 }

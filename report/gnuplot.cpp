@@ -176,14 +176,17 @@ Legend legend_of(std::span<Panel const> panels, bool poster) {
 }
 
 /// The clauses that draw one curve: its line, its points, its grey points.
-void plot_clauses(std::vector<std::string>& out, std::string const& block, Panel const& panel, Curve const& curve,
+void plot_clauses(std::vector<std::string>& out, std::string const& block, Panel const& panel, std::size_t k,
                   bool poster) {
+  Curve const& curve = panel.curves[k];
+  // where two curves coincide, the symbols of both are seen
+  std::size_t const first = k * static_cast<std::size_t>(curve.style.every) / panel.curves.size();
   if (!has(panel, curve, -1)) return;
   if (curve.style.line) out.push_back(fmt::format("{} with lines {} notitle", block, line_look(curve.style, poster)));
   for (int const mark : {0, 1}) {
     if (!curve.style.points || !has(panel, curve, mark)) continue;
-    out.push_back(fmt::format("{}_{} every {}::{} with points {} notitle", block, mark, curve.style.every,
-                              curve.style.index % curve.style.every, point_look(curve.style, mark == 1, poster)));
+    out.push_back(fmt::format("{}_{} every {}::{} with points {} notitle", block, mark, curve.style.every, first,
+                              point_look(curve.style, mark == 1, poster)));
   }
 }
 
@@ -304,7 +307,7 @@ std::string gnuplot_script(Figure const& figure) {
       for (int const mark : {0, 1}) {
         if (curve.style.points) data += data_block(fmt::format("{}_{}", block, mark), panel, curve, mark);
       }
-      plot_clauses(clauses, block, panel, curve, figure.poster);
+      plot_clauses(clauses, block, panel, k, figure.poster);
     }
     if (clauses.empty()) continue;
     // gnuplot drops what it would have to draw below the panel that it draws the legend with: so take the lowest.

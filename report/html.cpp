@@ -11,9 +11,10 @@ constexpr char const* style = R"(
 @media (prefers-color-scheme: dark) {
   :root { --page: #16191c; --ink: #e4e7ea; --quiet: #a2a9b0; --rule: #3a4046; --row: #1f2327; }
 }
-body { margin: 0 auto; padding: 1rem; max-width: 62rem; background: var(--page); color: var(--ink);
+body { margin: 0 auto; padding: 1rem; max-width: 76rem; background: var(--page); color: var(--ink);
   font: 1rem/1.5 system-ui, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif; overflow-wrap: break-word; }
 h1, h2, h3 { line-height: 1.25; }
+p, figcaption { max-width: 50rem; }
 h2 { margin-top: 2.5rem; border-top: 1px solid var(--rule); padding-top: 1rem; }
 nav ul { columns: 18rem; list-style: none; padding: 0; }
 a { color: inherit; }
@@ -22,11 +23,12 @@ figcaption { color: var(--quiet); font-size: .9rem; margin: .4rem 0; }
 .wide { overflow-x: auto; }
 .wide svg { display: block; max-width: 100%; height: auto; border-radius: 6px; }
 table { border-collapse: collapse; font-size: .9rem; font-variant-numeric: tabular-nums; }
-th, td { padding: .25rem .6rem; text-align: left; vertical-align: top; border-bottom: 1px solid var(--rule); }
+th, td { padding: .25rem .5rem; text-align: left; vertical-align: top; border-bottom: 1px solid var(--rule); }
 td { max-width: 28rem; }
 th { vertical-align: bottom; }
 tbody tr:nth-child(even) { background: var(--row); }
-.number { text-align: right; white-space: nowrap; }
+.number { text-align: right; }
+.number, .short { white-space: nowrap; }
 code { font: .9em ui-monospace, "SF Mono", Consolas, "DejaVu Sans Mono", monospace; }
 @media print { nav { display: none; } }
 )";
@@ -54,6 +56,9 @@ std::string made_by(std::string_view file) {
   return fmt::format("Data: <a href=\"{0}\">{0}</a>. Made by <code>polhode report DIR</code>.", file);
 }
 
+/// Texts up to this length stay on one line of a table.
+constexpr std::size_t short_text = 36;
+
 std::string render(Table const& table) {
   std::string out = fmt::format(
       "<figure id=\"{0}\">\n<figcaption><b>Table {0}.</b> {1}</figcaption>\n<div class=\"wide\"><table>\n<thead><tr>",
@@ -70,7 +75,9 @@ std::string render(Table const& table) {
     out += "<tr>";
     for (std::size_t i = 0; i < row.size(); ++i) {
       if (is_hidden(table, i)) continue;
-      out += fmt::format("<td{}>{}</td>", attribute(i), escape_html(row[i].text));
+      bool const is_number = i < table.columns.size() && table.columns[i].number;
+      char const* kind = is_number ? "number" : row[i].text.size() <= short_text ? "short" : "long";
+      out += fmt::format("<td class=\"{}\">{}</td>", kind, escape_html(row[i].text));
     }
     out += "</tr>\n";
   }
