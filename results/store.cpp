@@ -106,6 +106,7 @@ class Collector {
     }
     close(record.cell, record.build);
     Key const key(record.cell, record.build);
+    contents_.repeated += record_at_.contains(key);
     put(contents_.records, record_at_, key, std::move(record));
   }
 

@@ -28,6 +28,7 @@ struct Contents {
   std::vector<Record> records;  ///< in order of first appearance
   std::vector<Series> series;   ///< a cell that was run more than once keeps its last series of each name
   std::vector<std::string> unfinished;  ///< cells with a begin and no run of the same build after it
+  std::size_t repeated = 0;             ///< runs that a later run of the same cell and build replaced
 };
 
 /// Reads every *.jsonl in `path` (a folder), in the order of their names, or `path` itself (a file). Throws StoreError.

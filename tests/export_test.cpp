@@ -1,0 +1,285 @@
+/// Records in other files: CSV and Google Benchmark JSON, and several folders as one.
+#include "results/export.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "results/merge.hpp"
+#include "results/run_name.hpp"
+
+namespace polhode::results {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+Record record_of(std::string const& integrator, double h, std::string const& build = "b") {
+  Record record;
+  record.of.problem = "free_body";
+  record.of.formulation = "quaternion";
+  record.of.integrator = integrator;
+  record.of.h = h;
+  record.of.t_end = 50;
+  record.cell = cell_id(record.of);
+  record.build = build;
+  record.steps = 500;
+  record.norm_drift_max = 1.0 / 3 * 1e-15;
+  record.cpu_time_s = CpuTime{2.5e-5, 2.25e-5, 3e-5, 5};
+  return record;
+}
+
+/// The fields of a CSV text, by RFC 4180.
+std::vector<std::vector<std::string>> parse_csv(std::string const& text) {
+  std::vector<std::vector<std::string>> rows(1, {""});
+  bool inside = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    char const c = text[i];
+    bool const doubled = inside && c == '"' && i + 1 < text.size() && text[i + 1] == '"';
+    if (doubled) {
+      rows.back().back() += '"';
+      ++i;
+    } else if (c == '"') {
+      inside = !inside;
+    } else if (!inside && c == ',') {
+      rows.back().emplace_back();
+    } else if (!inside && c == '\n') {
+      rows.push_back({""});
+    } else {
+      rows.back().back() += c;
+    }
+  }
+  rows.pop_back();
+  return rows;
+}
+
+TEST(ExportCsv, EveryFieldReadsBack) {
+  Record record = record_of("rk4", 0.1);
+  record.of.set["inertia"] = {0.6, 0.8, 1};
+  record.cell = cell_id(record.of);
+  record.status = Status::diverged;
+  record.reason = "not finite, at \"t\" = 3 s\nand later";
+  record.claims["alpha"] = {1.5, {}, "reproduced"};
+  auto const rows = parse_csv(csv_text({record, record_of("gauss2", 0.2)}));
+  ASSERT_EQ(rows.size(), 3u);
+  Json json = to_json(record);
+  json.erase("schema");
+  json.erase("kind");
+  ASSERT_EQ(rows[0].size(), json.size());
+  ASSERT_EQ(rows[1].size(), json.size());
+  std::size_t column = 0;
+  for (auto const& [name, value] : json.items()) {
+    EXPECT_EQ(rows[0][column], name);
+    std::string const& text = rows[1][column++];
+    if (value.is_null()) {
+      EXPECT_EQ(text, "") << name;
+    } else if (value.is_string()) {
+      EXPECT_EQ(text, value.get<std::string>()) << name;
+    } else {
+      EXPECT_EQ(Json::parse(text), value) << name;
+    }
+  }
+  EXPECT_EQ(rows[2].size(), json.size());
+}
+
+TEST(ExportCsv, WithoutRecordsThereIsAHeader) {
+  EXPECT_THAT(csv_text({}), testing::StartsWith("cell,build,problem,variant,"));
+}
+
+// --- Google Benchmark ------------------------------------------------------------------------------------------------
+
+Contents contents_of(std::vector<Record> records) {
+  Contents contents;
+  contents.metas = {{{"build", "b"}, {"utc", "2024-01-01T00:00:00Z"}, {"version", "0.1.0"}, {"cpus_available", "2"}}};
+  contents.records = std::move(records);
+  return contents;
+}
+
+TEST(ExportBenchmark, HasWhatCompareReads) {
+  Json const json = Json::parse(benchmark_json_text(contents_of({record_of("rk4", 0.1)})));
+  EXPECT_EQ(json.at("context").at("date"), "2024-01-01T00:00:00Z");
+  EXPECT_EQ(json.at("context").at("num_cpus"), 2);
+  Json const& benchmark = json.at("benchmarks").at(0);
+  EXPECT_EQ(benchmark.at("name"), "free_body//quaternion/rk4/none/h=0.1");
+  EXPECT_EQ(benchmark.at("run_name"), benchmark.at("name"));
+  EXPECT_EQ(benchmark.at("run_type"), "iteration");
+  EXPECT_EQ(benchmark.at("repetitions"), 5);
+  EXPECT_EQ(benchmark.at("time_unit"), "ns");
+  EXPECT_DOUBLE_EQ(benchmark.at("cpu_time").get<double>(), 25000);
+  EXPECT_DOUBLE_EQ(benchmark.at("real_time").get<double>(), 25000);
+  EXPECT_DOUBLE_EQ(benchmark.at("cpu_time_low").get<double>(), 22500);
+  EXPECT_EQ(benchmark.at("steps"), 500);
+}
+
+TEST(ExportBenchmark, NamesAreUnique) {
+  std::vector<Record> records;
+  auto const add = [&](std::function<void(Cell&)> const& change) {
+    Record record = record_of("rk4", 0.1);
+    change(record.of);
+    record.cell = cell_id(record.of);
+    records.push_back(record);
+  };
+  add([](Cell&) {});
+  add([](Cell& cell) { cell.t_end = 60; });
+  add([](Cell& cell) { cell.policy = "project"; });
+  add([](Cell& cell) { cell.seed = 2; });
+  add([](Cell& cell) { cell.set["inertia"] = {1, 2, 2.5}; });
+  add([](Cell& cell) {
+    cell.h.reset();
+    cell.rtol = 1e-6;
+    cell.atol = 1e-8;
+  });
+  std::set<std::string> names;
+  Json const json = Json::parse(benchmark_json_text(contents_of(records)));
+  for (Json const& benchmark : json.at("benchmarks")) names.insert(benchmark.at("name").get<std::string>());
+  std::string const common = "free_body//quaternion/rk4/";
+  EXPECT_THAT(names, ElementsAre(common + "none/h=0.1/inertia=1,2,2.5", common + "none/h=0.1/seed=2",
+                                 common + "none/h=0.1/t_end=50", common + "none/h=0.1/t_end=60",
+                                 common + "none/rtol=1e-06,atol=1e-08", common + "project/h=0.1"));
+}
+
+TEST(ExportBenchmark, WhatWasNotTimedOrIsOlderIsLeftOut) {
+  Record untimed = record_of("rk4", 0.2);
+  untimed.cpu_time_s.reset();
+  auto const contents = contents_of({record_of("rk4", 0.1), untimed, record_of("rk4", 0.1, "older")});
+  EXPECT_EQ(Json::parse(benchmark_json_text(contents)).at("benchmarks").size(), 1u);
+  EXPECT_EQ(left_out_of_benchmarks(contents), 2u);
+}
+
+// --- Merge -----------------------------------------------------------------------------------------------------------
+
+std::string text_of(fs::path const& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+class Merge : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string name = testing::TempDir() + "polhode_merge_XXXXXX";
+    ASSERT_NE(::mkdtemp(name.data()), nullptr);
+    root = name;
+  }
+  void TearDown() override { fs::remove_all(root); }
+
+  /// A folder with one file of these records, each with a begin and a history.
+  fs::path folder(std::string const& name, std::vector<Record> const& records, std::string const& build = "b") {
+    fs::create_directories(root / name);
+    Writer writer(root / name / "run-1.jsonl", {{"build", build}, {"host", name}});
+    for (Record const& record : records) {
+      writer.begin(record.cell, record.build);
+      writer.series({record.cell, "drift", {"t"}, {"s"}, {{double(*record.steps)}}});
+      writer.run(record);
+    }
+    return root / name;
+  }
+  std::string error_of(std::vector<fs::path> const& folders) {
+    try {
+      merge(root / "out", folders);
+    } catch (StoreError const& error) {
+      return error.what();
+    }
+    return "nothing was thrown";
+  }
+
+  fs::path root;
+};
+
+TEST_F(Merge, ShardsBecomeOneFolder) {
+  auto const a = folder("a", {record_of("rk4", 0.1), record_of("rk4", 0.2)});
+  auto const b = folder("b", {record_of("gauss2", 0.1)});
+  std::ofstream(a / "suite.toml") << "name = 'x'\n";
+  std::ofstream(b / "suite.toml") << "name = 'x'\n";
+  MergeSummary const summary = merge(root / "out", {a, b});
+  EXPECT_EQ(summary.folders, 2u);
+  EXPECT_EQ(summary.files, 2u);
+  EXPECT_EQ(summary.records, 3u);
+  EXPECT_EQ(summary.repeated, 0u);
+  Contents const contents = read(root / "out");
+  EXPECT_EQ(contents.records.size(), 3u);
+  EXPECT_EQ(contents.series.size(), 3u);
+  ASSERT_EQ(contents.metas.size(), 2u) << "provenance stays with its records";
+  EXPECT_EQ(contents.metas[0].at("host"), "a");
+  EXPECT_EQ(contents.metas[1].at("host"), "b");
+  EXPECT_EQ(text_of(root / "out" / "suite.toml"), "name = 'x'\n");
+}
+
+TEST_F(Merge, OfEqualRunsTheLastIsKeptAndTheOthersCounted) {
+  Record const first = record_of("rk4", 0.1);
+  Record second = first;
+  second.steps = 501;
+  Record third = first;
+  third.steps = 502;
+  auto const a = folder("a", {first, second});  // twice in one file
+  auto const b = folder("b", {third, record_of("rk4", 0.2)});
+  MergeSummary const summary = merge(root / "out", {a, b});
+  EXPECT_EQ(summary.repeated, 2u);
+  EXPECT_EQ(summary.records, 2u);
+  Contents const contents = read(root / "out");
+  ASSERT_EQ(contents.records.size(), 2u);
+  EXPECT_EQ(contents.repeated, 0u);
+  EXPECT_EQ(contents.records[0].steps, 502);
+  EXPECT_EQ(contents.series[0].rows[0][0], 502) << "its history, too";
+  // In the other order, the last is another.
+  merge(root / "other", {b, a});
+  for (Record const& record : read(root / "other").records) EXPECT_EQ(record.steps, record.of.h == 0.1 ? 501 : 500);
+}
+
+TEST_F(Merge, RunsOfTwoBuildsAreTwoRuns) {
+  auto const a = folder("a", {record_of("rk4", 0.1, "b")}, "b");
+  auto const b = folder("b", {record_of("rk4", 0.1, "c")}, "c");
+  EXPECT_EQ(merge(root / "out", {a, b}).records, 2u);
+  EXPECT_EQ(read(root / "out").records.size(), 2u);
+}
+
+TEST_F(Merge, ABeginWithoutRunIsKeptUnlessItRanElsewhere) {
+  auto const a = folder("a", {record_of("rk4", 0.1)});
+  Record const crashed = record_of("rk4", 0.2);
+  Record const elsewhere = record_of("rk4", 0.4);
+  {
+    Writer writer(a / "run-2.jsonl", {{"build", "b"}});
+    writer.begin(crashed.cell, "b");
+    writer.begin(elsewhere.cell, "b");
+  }
+  merge(root / "out", {a, folder("b", {elsewhere})});
+  EXPECT_THAT(read(root / "out").unfinished, ElementsAre(crashed.cell));
+}
+
+TEST_F(Merge, DamageIsRefusedWithItsLineAndNothingIsWritten) {
+  auto const a = folder("a", {record_of("rk4", 0.1)});
+  auto const b = folder("b", {record_of("rk4", 0.2)});
+  std::ofstream(b / "run-1.jsonl", std::ios::app) << "{\"schema\":1}\n";
+  EXPECT_THAT(error_of({a, b}), HasSubstr("b/run-1.jsonl:5: kind: missing"));
+  EXPECT_FALSE(fs::exists(root / "out"));
+}
+
+TEST_F(Merge, ATornLineAndAFileWithoutMetaAreForgiven) {
+  auto const a = folder("a", {record_of("rk4", 0.1)});
+  std::ofstream(a / "run-1.jsonl", std::ios::app) << "{\"schema\":1,";
+  std::ofstream(a / "run-2.jsonl") << "";
+  EXPECT_EQ(merge(root / "out", {a}).records, 1u);
+}
+
+TEST_F(Merge, WhatDoesNotFitIsRefused) {
+  auto const a = folder("a", {record_of("rk4", 0.1)});
+  auto const b = folder("b", {record_of("rk4", 0.2)});
+  std::ofstream(a / "suite.toml") << "name = 'x'\n";
+  std::ofstream(b / "suite.toml") << "name = 'y'\n";
+  EXPECT_THAT(error_of({a, b}), HasSubstr("merge results of one suite"));
+  EXPECT_THAT(error_of({a, root / "nowhere"}), HasSubstr("nowhere: no such folder"));
+  merge(root / "out", {a});
+  EXPECT_THAT(error_of({b}), HasSubstr("out: holds records already"));
+}
+
+}  // namespace
+}  // namespace polhode::results
