@@ -101,12 +101,14 @@ std::string csv_text(std::vector<Record> const& records) {
   });
   text += '\n';
   for (Record const& record : records) {
-    std::string row;
     Json json = to_json(record);
     json.erase("schema");
     json.erase("kind");
-    for (auto const& [name, value] : json.items()) row += "," + csv_value(value);
-    text += row.substr(1) + "\n";
+    for (auto const& [name, value] : json.items()) {
+      text += csv_value(value);
+      text += ',';
+    }
+    text.back() = '\n';
   }
   return text;
 }
