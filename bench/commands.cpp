@@ -397,6 +397,8 @@ void add_commands(CLI::App& app, int& code) {
   add_run(app, code);
   add_simulate(app, code);
   add_reference(app);
+  add_check(app, code);
+  add_export(app);
 }
 
 }  // namespace polhode::bench

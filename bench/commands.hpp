@@ -10,6 +10,10 @@ namespace polhode::bench {
 
 /// Adds the verbs to `app`. A verb that ran writes its exit code; mistakes are thrown.
 void add_commands(CLI::App& app, int& code);
+/// The verb check: expectations and golden columns.
+void add_check(CLI::App& app, int& code);
+/// The verbs export and merge: records in other files.
+void add_export(CLI::App& app);
 
 /// Parses "inertia=0.5,0.85,1". Throws UsageError.
 std::pair<std::string, std::vector<double>> parse_setting(std::string const& text);

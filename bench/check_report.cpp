@@ -1,0 +1,177 @@
+#include "bench/check_report.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+
+namespace polhode::bench {
+namespace {
+
+constexpr std::array columns{"line", "selector", "field", "bound", "worst value", "verdict"};
+using Line = std::array<std::string, columns.size()>;
+
+/// More than these make a log unreadable; the files hold all of them.
+constexpr std::size_t most_failures_shown = 20;
+
+Line cells_of(Row const& row) {
+  std::string const worst = row.worst.empty() ? "-" : fmt::format("{} in {}", row.worst, row.worst_cell);
+  return {std::to_string(row.line), row.selector, row.field, row.bound, worst, std::string(name_of(row.verdict))};
+}
+
+std::string coloured(std::string const& text, Verdict verdict, bool colour) {
+  if (!colour) return text;
+  char const* code = verdict == Verdict::passed ? "32" : is_good(verdict) ? "33" : "31";
+  return fmt::format("\033[{}m{}\033[0m", code, text);
+}
+
+std::string count_of(std::vector<Row> const& rows) {
+  auto const with = [&](Verdict verdict) { return std::ranges::count(rows, verdict, &Row::verdict); };
+  auto const bad = std::ranges::count_if(rows, [](Row const& row) { return !is_good(row.verdict); });
+  std::string text = fmt::format("{} checks: {} passed, {} failed", rows.size(), with(Verdict::passed), bad);
+  if (auto const expected = with(Verdict::expected_fail); expected > 0) {
+    text += fmt::format(", {} expected to fail", expected);
+  }
+  return text;
+}
+
+std::string subject_text(CheckSubject const& subject) {
+  return fmt::format("suite {} ({}): {} of {} cells have records of build {}{}", subject.suite, subject.file,
+                     subject.records, subject.cells, subject.build,
+                     subject.made.empty() ? "" : " (" + subject.made + ")");
+}
+
+/// For text and attributes alike. XML 1.0 has no escape for control characters.
+std::string xml(std::string_view text) {
+  std::string safe;
+  for (char const c : text) {
+    bool const control = static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t';
+    switch (c) {
+      case '&':
+        safe += "&amp;";
+        break;
+      case '<':
+        safe += "&lt;";
+        break;
+      case '>':
+        safe += "&gt;";
+        break;
+      case '"':
+        safe += "&quot;";
+        break;
+      case '\'':
+        safe += "&apos;";
+        break;
+      case '\n':
+        safe += "&#10;";
+        break;
+      default:
+        safe += control ? '?' : c;
+    }
+  }
+  return safe;
+}
+
+std::string all_failures(Row const& row) {
+  std::string text;
+  for (std::string const& failure : row.failures) text += failure + "\n";
+  return text;
+}
+
+std::string testcase(CheckSubject const& subject, Row const& row) {
+  std::string const name = fmt::format("line {}: {} {} {}", row.line, row.selector, row.field, row.bound);
+  std::string text = fmt::format("  <testcase classname=\"{}\" name=\"{}\" file=\"{}\" line=\"{}\" time=\"0\"",
+                                 xml("polhode.check." + subject.suite), xml(name), xml(subject.file), row.line);
+  if (row.verdict == Verdict::passed) return text + "/>\n";
+  text += ">\n";
+  if (row.verdict == Verdict::expected_fail) {
+    text += fmt::format("    <skipped message=\"{}\"/>\n", xml("expected failure: " + row.xfail));
+  } else {
+    std::string const& first = row.failures.front();
+    text += fmt::format("    <failure message=\"{}\" type=\"{}\">{}</failure>\n", xml(first), xml(name_of(row.verdict)),
+                        xml(all_failures(row)));
+  }
+  return text + "  </testcase>\n";
+}
+
+/// A cell of a Markdown table.
+std::string markdown(std::string_view text) {
+  std::string safe;
+  for (char const c : text) {
+    if (c == '|' || c == '<' || c == '*' || c == '_' || c == '`' || c == '\\') safe += '\\';
+    safe += c == '\n' ? ' ' : c;
+  }
+  return safe;
+}
+
+}  // namespace
+
+std::string table_text(CheckSubject const& subject, std::vector<Row> const& rows, bool colour) {
+  Line const heads{"line", "selector", "field", "bound", "worst value", "verdict"};
+  std::vector<Line> lines;
+  for (Row const& row : rows) lines.push_back(cells_of(row));
+  std::array<std::size_t, columns.size()> widths{};
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    widths[i] = heads[i].size();
+    for (Line const& line : lines) widths[i] = std::max(widths[i], line[i].size());
+  }
+  auto const draw = [&](Line const& line, std::string const& verdict) {
+    std::string text = fmt::format("{:>{}}", line[0], widths[0]);
+    for (std::size_t i = 1; i + 1 < line.size(); ++i) text += fmt::format("  {:<{}}", line[i], widths[i]);
+    return text + "  " + verdict + "\n";
+  };
+  std::string text = subject_text(subject) + "\n\n" + draw(heads, heads.back());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    text += draw(lines[i], coloured(lines[i].back(), rows[i].verdict, colour));
+  }
+  text += "\n";
+  for (Row const& row : rows) {
+    if (is_good(row.verdict)) continue;
+    std::string const place = fmt::format("{}:{}: ", subject.file, row.line);
+    std::size_t const shown = std::min(row.failures.size(), most_failures_shown);
+    for (std::size_t i = 0; i < shown; ++i) text += place + coloured(row.failures[i], row.verdict, colour) + "\n";
+    if (shown < row.failures.size()) text += fmt::format("{}and {} more\n", place, row.failures.size() - shown);
+  }
+  return text + count_of(rows) + "\n";
+}
+
+std::string junit_text(CheckSubject const& subject, std::vector<Row> const& rows) {
+  auto const bad = std::ranges::count_if(rows, [](Row const& row) { return !is_good(row.verdict); });
+  auto const skipped = std::ranges::count(rows, Verdict::expected_fail, &Row::verdict);
+  std::string const counts =
+      fmt::format("tests=\"{}\" failures=\"{}\" errors=\"0\" skipped=\"{}\" time=\"0\"", rows.size(), bad, skipped);
+  std::string text = fmt::format("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites {}>\n", counts);
+  text += fmt::format(" <testsuite name=\"{}\" {}>\n", xml("polhode check " + subject.suite), counts);
+  text += fmt::format("  <properties><property name=\"build\" value=\"{}\"/></properties>\n", xml(subject.build));
+  for (Row const& row : rows) text += testcase(subject, row);
+  return text + " </testsuite>\n</testsuites>\n";
+}
+
+std::string markdown_text(CheckSubject const& subject, std::vector<Row> const& rows) {
+  std::string text = fmt::format("## polhode check: {}\n\n{}. {}.\n\n", markdown(subject.suite),
+                                 markdown(subject_text(subject)), count_of(rows));
+  text += "|";
+  for (char const* column : columns) text += fmt::format(" {} |", column);
+  text += "\n|---:|---|---|---|---|---|\n";
+  for (Row const& row : rows) {
+    text += "|";
+    for (std::string const& cell : cells_of(row)) text += fmt::format(" {} |", markdown(cell));
+    text += "\n";
+  }
+  for (Row const& row : rows) {
+    if (is_good(row.verdict)) continue;
+    text += fmt::format("\n{}:{}, {}:\n\n", markdown(subject.file), row.line, markdown(row.field));
+    for (std::string const& failure : row.failures) text += fmt::format("- {}\n", markdown(failure));
+  }
+  return text;
+}
+
+bool wants_colour(int descriptor) {
+  char const* refusal = std::getenv("NO_COLOR");
+  bool const refused = refusal != nullptr && *refusal != '\0';
+  return !refused && isatty(descriptor) != 0;
+}
+
+}  // namespace polhode::bench

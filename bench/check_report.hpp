@@ -1,0 +1,28 @@
+#pragma once
+/// What a check found, for four readers: a terminal, a log, a CI server (JUnit XML), a summary page (Markdown).
+#include <string>
+#include <vector>
+
+#include "bench/check.hpp"
+
+namespace polhode::bench {
+
+/// What was checked.
+struct CheckSubject {
+  std::string suite;  ///< its name
+  std::string file;   ///< its file
+  std::string build;  ///< whose records
+  std::string made;   ///< when and of which commit, as far as known
+  std::size_t records = 0, cells = 0;
+};
+
+/// An aligned table, then every failure, then the count. ANSI colours only if `colour`.
+std::string table_text(CheckSubject const& subject, std::vector<Row> const& rows, bool colour);
+/// One testsuite, one testcase for each row. Text that XML cannot hold is replaced.
+std::string junit_text(CheckSubject const& subject, std::vector<Row> const& rows);
+std::string markdown_text(CheckSubject const& subject, std::vector<Row> const& rows);
+
+/// True if `descriptor` is a terminal and the environment does not say NO_COLOR.
+bool wants_colour(int descriptor);
+
+}  // namespace polhode::bench
