@@ -6,6 +6,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "problems/exact.hpp"
+
 namespace polhode::bench {
 namespace {
 
@@ -107,6 +109,19 @@ std::string reference_id(results::Cell const& cell) {
   return results::hash_of(reference_subject(cell));
 }
 
+namespace {
+
+/// The closed form of a free body in principal axes; null for any other problem, and for initial data or signs that
+/// belong to no physical body.
+std::optional<ExactFreeBody<Quad>> closed_form_of(ChosenProblem const& problem) {
+  BodyParameters const& body = problem.body();
+  if (!problem.torque_free() || !body.principal() || body.coriolis_sign != 1 || body.raw_q0) return {};
+  Vec3<Quad> const moments{body.inertia[0], body.inertia[1], body.inertia[2]};
+  return ExactFreeBody<Quad>(moments, body.attitude<Quad>(), body.rate<Quad>());
+}
+
+}  // namespace
+
 Certificate certify(results::Cell const& cell, ChosenProblem const& problem, Schedule const& schedule,
                     Reference const& reference) {
   Certificate certificate{.id = reference_id(cell), .subject = reference_subject(cell)};
@@ -128,6 +143,15 @@ Certificate certify(results::Cell const& cell, ChosenProblem const& problem, Sch
     certificate.states.push_back(here);
   }
   certificate.bar = std::max(certificate.disagreement, certificate.halving);
+  if (auto const exact = closed_form_of(problem)) {
+    double worst = 0;
+    for (std::size_t k = 0; k < certificate.times.size(); ++k) {
+      Quat<Quad> const q = exact->at(certificate.times[k]).first;
+      worst = std::max(worst, double(polhode::angle_between(certificate.states[k].q, q)));
+    }
+    certificate.closed_form = worst;
+    certificate.bar = std::max(certificate.bar, worst);
+  }
   return certificate;
 }
 
@@ -136,16 +160,22 @@ namespace {
 constexpr std::array names{"q1", "q2", "q3", "q4", "wx", "wy", "wz"};
 
 nlohmann::ordered_json contents_of(Certificate const& c) {
-  nlohmann::ordered_json json{
-      {"schema", results::schema},
-      {"kind", "reference"},
-      {"id", c.id},
-      {"subject", c.subject},
-      {"methods", {"Taylor, degree 32, float128, flat quaternion", "Gauss, 8 stages, float128, S3"}},
-      {"bar_rad", c.bar},
-      {"disagreement_rad", c.disagreement},
-      {"halving_rad", c.halving},
-      {"columns", names}};
+  std::vector<std::string> methods{"Taylor, degree 32, float128, flat quaternion", "Gauss, 8 stages, float128, S3"};
+  nlohmann::ordered_json closed_form;  // null
+  if (c.closed_form) {
+    methods.emplace_back("closed form, elliptic functions, float128");
+    closed_form = *c.closed_form;
+  }
+  nlohmann::ordered_json json{{"schema", results::schema},
+                              {"kind", "reference"},
+                              {"id", c.id},
+                              {"subject", c.subject},
+                              {"methods", methods},
+                              {"bar_rad", c.bar},
+                              {"disagreement_rad", c.disagreement},
+                              {"halving_rad", c.halving},
+                              {"closed_form_rad", closed_form},
+                              {"columns", names}};
   for (std::size_t k = 0; k < c.times.size(); ++k) {
     nlohmann::ordered_json row{{"t", c.times[k]}};
     for (Quad x : numbers(c.states[k])) {
@@ -186,6 +216,9 @@ Certificate load(std::filesystem::path const& file) {
                   .bar = json.at("bar_rad"),
                   .disagreement = json.at("disagreement_rad"),
                   .halving = json.at("halving_rad")};
+    // Absent in certificates made before the closed form was a witness.
+    if (auto const closed_form = json.find("closed_form_rad"); closed_form != json.end() && !closed_form->is_null())
+      c.closed_form = closed_form->get<double>();
     for (auto const& row : json.at("states")) {
       std::array<Quad, 7> x{};
       for (std::size_t i = 0; i < x.size(); ++i)

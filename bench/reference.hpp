@@ -1,9 +1,11 @@
 #pragma once
 /// Certified references: what every run is held against. Two independent methods in quadruple precision on different
-/// formulations, Taylor series on flat quaternions and 8-stage Gauss on the group S3; the error bar is the greatest of
-/// their disagreement and of Gauss's change on halving its step. No competitor is ever the reference.
+/// formulations, Taylor series on flat quaternions and 8-stage Gauss on the group S3, and for free bodies the closed
+/// form; the error bar is the greatest of their disagreements and of Gauss's change on halving its step. No competitor
+/// is ever the reference.
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,8 +54,10 @@ struct Certificate {
   std::string id;  ///< hash of `subject`: problem, variant, parameters, horizon
   std::string subject;
   double bar = 0;                        ///< [rad]
-  double disagreement = 0, halving = 0;  ///< its two parts [rad]
-  std::vector<double> times{};           ///< where the states are stored [s]
+  double disagreement = 0, halving = 0;  ///< two of its parts [rad]
+  /// The third: Taylor against the closed form [rad]; null if the problem is not a free body in principal axes.
+  std::optional<double> closed_form{};
+  std::vector<double> times{};  ///< where the states are stored [s]
   std::vector<QuadState> states{};
 };
 
