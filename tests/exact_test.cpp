@@ -1,5 +1,5 @@
 /// The closed form of the free body against Gauss in quadruple precision, published numbers, its invariants and itself;
-/// Jacobi's functions against Boost.Math.
+/// Jacobi's functions against Boost.Math; and its part in the certificates of references.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,10 +11,13 @@
 #include <string>
 #include <vector>
 
+#include "bench/cell.hpp"
+#include "bench/reference.hpp"
 #include "integrators/gauss.hpp"
 #include "problems/exact.hpp"
 #include "problems/rigid_body.hpp"
 #include "tests/random_numbers.hpp"
+#include "tests/runs.hpp"
 
 namespace polhode {
 namespace {
@@ -335,6 +338,33 @@ TEST(ExactFreeBody, LosesNothingNearTheSeparatrix) {
     Case const c{"near", {1, 2, 2.25}, {0.75 * (1 + distance), random.uniform(-1, 1), 1}, 1000, random.attitude()};
     EXPECT_LT(rounding_units(c, {-1000, 1, 30, 333, 1000}), 8) << "seed " << seed << ", distance " << distance;
   }
+}
+
+// ---- Witness of references ------------------------------------------------------------------------------------------
+
+bench::Certificate certificate_of(test::CellUnderTest const& it) {
+  bench::PreparedCell const prepared = bench::prepare(it.with_rtol(1e-6).until(5).cell);
+  return bench::certify(prepared.physics, *prepared.problem, prepared.schedule,
+                        bench::Reference::solve(*prepared.problem, prepared.schedule));
+}
+
+TEST(Certificate, HoldsAFreeBodyAgainstTheClosedForm) {
+  for (auto const& it : {test::a_cell("free_body", "quaternion", "dopri5"),
+                         test::a_cell("tether_capture", "quaternion", "dopri5").of_variant("free")}) {
+    bench::Certificate const certificate = certificate_of(it);
+    ASSERT_TRUE(certificate.closed_form.has_value()) << certificate.subject;
+    EXPECT_LT(*certificate.closed_form, 1e-31) << certificate.subject;
+    EXPECT_GE(certificate.bar, *certificate.closed_form) << certificate.subject;
+  }
+}
+
+TEST(Certificate, KnowsNoClosedFormOfOtherProblems) {
+  auto const free_body = test::a_cell("free_body", "quaternion", "dopri5");
+  auto const tether = test::a_cell("tether_capture", "quaternion", "dopri5");
+  for (auto const& it :
+       {free_body.set("inertia", {100, 120, 110, 1, 2, 3}), tether, tether.of_variant("free,as_printed"),
+        tether.of_variant("free,raw_q0"), test::a_cell("pd_slew", "quaternion", "dopri5")})
+    EXPECT_FALSE(certificate_of(it).closed_form.has_value()) << it.cell.problem << " " << it.cell.variant;
 }
 
 }  // namespace
