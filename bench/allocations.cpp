@@ -15,14 +15,37 @@ void* allocate(std::size_t size) {
 
 }  // namespace
 
-// The replaceable operators of the whole program; the array and nothrow forms call these.
+// The replaceable operators of the whole program, every form, so that each new meets its own delete.
 void* operator new(std::size_t size) {
   return allocate(size);
+}
+void* operator new[](std::size_t size) {
+  return allocate(size);
+}
+void* operator new(std::size_t size, std::nothrow_t const&) noexcept {
+  ++count;
+  return std::malloc(size > 0 ? size : 1);
+}
+void* operator new[](std::size_t size, std::nothrow_t const&) noexcept {
+  ++count;
+  return std::malloc(size > 0 ? size : 1);
 }
 void operator delete(void* memory) noexcept {
   std::free(memory);
 }
+void operator delete[](void* memory) noexcept {
+  std::free(memory);
+}
 void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::nothrow_t const&) noexcept {
+  std::free(memory);
+}
+void operator delete[](void* memory, std::nothrow_t const&) noexcept {
   std::free(memory);
 }
 

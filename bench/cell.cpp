@@ -142,6 +142,17 @@ bool divides(double h, double period) {
   return std::round(ratio) >= 1 && std::fabs(ratio - std::round(ratio)) <= 1e-9 * ratio;
 }
 
+/// Why a norm policy is refused for a method on space M; empty if it is not.
+template <Space M>
+std::string_view policy_refusal(MethodInfo const& info, NormPolicy policy) {
+  if (policy == NormPolicy::none) return "";
+  if (!M::constrained) return "this formulation has no norm to project";
+  if (policy == NormPolicy::native) return info.projects_natively ? "" : "has no projection of its own";
+  if (policy == NormPolicy::project_multiplier && !std::same_as<Point<typename M::Factor>, Quat<double>>)
+    return "the multiplier form of the projection is that of a quaternion";
+  return info.no_projection;
+}
+
 /// Why the combination does not run, in the order in which a user would want to know.
 std::string refusal_of(PreparedCell const& prepared) {
   std::string refusal;
@@ -150,10 +161,7 @@ std::string refusal_of(PreparedCell const& prepared) {
       [&]<Space M>(std::unique_ptr<Erased<M>> const&) {
         MethodOn<M> const& method = method_named<M>(prepared.cell.integrator);
         refusal = method.refusal;
-        if (refusal.empty() && prepared.plan.policy == NormPolicy::project) {
-          refusal = method.info->no_projection;
-          if (refusal.empty() && !M::constrained) refusal = "this formulation has no norm to project";
-        }
+        if (refusal.empty()) refusal = policy_refusal<M>(*method.info, prepared.plan.policy);
       },
       problem);
   return refusal;
@@ -280,14 +288,14 @@ Measured measure(PreparedCell const& prepared, References& references, std::stri
   record.reason = trajectory.reason;
   Outcome const& outcome = trajectory.outcome;
   record.steps = outcome.work.steps;
-  record.rejected = outcome.work.rejected;
+  if (prepared.cell.rtol) record.rejected = outcome.work.rejected;
   record.evaluations = outcome.evaluations;
   record.jacobians = outcome.work.jacobians;
   record.iterations = outcome.work.iterations;
-  record.controller_calls = std::count_if(prepared.plan.stops.begin(), prepared.plan.stops.end(),
-                                          [](Stop const& stop) { return stop.sample; });
-  record.events_located = 0;  // nobody locates state events yet: samples and jumps are announced
-  record.projections = outcome.projections.count;
+  if (prepared.schedule.sample_period > 0)
+    record.controller_calls = std::count_if(prepared.plan.stops.begin(), prepared.plan.stops.end(),
+                                            [](Stop const& stop) { return stop.sample; });
+  if (prepared.plan.policy != NormPolicy::none) record.projections = outcome.projections.count;
   if (record.status == results::Status::ok) {
     metrics.fill(record);
     if (prepared.plan.policy != NormPolicy::none) record.projection_work = outcome.projections.work;

@@ -1,4 +1,6 @@
 /// One list of the catalogue (POLHODE_METHODS: OwnMethods or Rivals), compiled on every space for erased problems.
+#include <tuple>
+
 #include "bench/methods.hpp"
 
 namespace polhode::bench {
@@ -48,10 +50,14 @@ std::vector<MethodOn<M>> methods_on() {
   return list<M>(Methods{});
 }
 
-// One line for each formulation of the catalogue.
-template std::vector<MethodOn<RigidBody<FlatQuaternion<double>>>>
-methods_on<RigidBody<FlatQuaternion<double>>, POLHODE_METHODS>();
-template std::vector<MethodOn<RigidBody<S3<double>>>> methods_on<RigidBody<S3<double>>, POLHODE_METHODS>();
-template std::vector<MethodOn<RigidBody<SO3<double>>>> methods_on<RigidBody<SO3<double>>, POLHODE_METHODS>();
+namespace {
 
+// Their addresses, kept, make every formulation of the catalogue an instance in this unit.
+template <class... F>
+auto instances(Types<F...>) {
+  return std::tuple{&methods_on<RigidBody<typename F::template On<double>>, POLHODE_METHODS>...};
+}
+[[gnu::used]] auto const kept = instances(Formulations{});
+
+}  // namespace
 }  // namespace polhode::bench

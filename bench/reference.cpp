@@ -52,6 +52,7 @@ Reference Reference::solve(ChosenProblem const& problem, Schedule const& schedul
       load(x, constants.data());
       field->sample(t, x);
     }
+    if (stops[k].jump) field->enter_phase(t);
     while (t < next) {
       auto segment = expand<Quad, 32>(*field, state, t, Quad(next - t), tolerance);
       if (!(segment.h > 1e-9 * schedule.t_end) && !(segment.h >= next - t))
@@ -88,6 +89,7 @@ std::vector<QuadState> solve_by_gauss(ChosenProblem const& problem, Schedule con
   std::vector<QuadState> states;
   for (std::size_t k = 0; k < stops.size(); ++k) {
     if (stops[k].sample) field->sample(stops[k].time, x);
+    if (stops[k].jump) field->enter_phase(stops[k].time);
     if (stops[k].sample || stops[k].jump) stepper.restart();
     states.push_back({x.first, x.second});
     if (k + 1 == stops.size()) break;

@@ -44,6 +44,8 @@ Status run_from_stop_to_stop(P& problem, Stepper& stepper, Point<M>& x, std::vec
     Stop const& here = stops[k];
     if constexpr (requires { problem.sample(here.time, x); })
       if (here.sample) problem.sample(here.time, x);
+    if constexpr (requires { problem.enter_phase(here.time); })
+      if (here.jump) problem.enter_phase(here.time);
     if (here.sample || here.jump) stepper.restart();
     watch.at_stop(here, x);
     if (k + 1 == stops.size()) break;

@@ -21,7 +21,10 @@ class Solve final : public TimedSolve {
   Status solve() override {
     problem_ = fresh_;  // a controller remembers its last sample
     state_ = problem_.initial();
-    stepper_.restart();
+    if constexpr (requires { stepper_.begin(); })
+      stepper_.begin();
+    else
+      stepper_.restart();
     return run_from_stop_to_stop(problem_, stepper_, state_, stops_, h_, NoWatch{});
   }
   std::vector<double> end_state() const override {

@@ -3,6 +3,7 @@
 /// follow.
 #include "integrators/gauss.hpp"
 #include "integrators/lie_group.hpp"
+#include "integrators/rivals/arkode.hpp"
 #include "integrators/rivals/cvode.hpp"
 #include "integrators/rivals/odeint.hpp"
 #include "integrators/runge_kutta.hpp"
@@ -14,6 +15,7 @@ using OwnMethods = Types<Rk4, Dopri5,                                           
                          GaussEntry<1>, GaussEntry<2>, GaussEntry<3>, GaussEntry<4>,  // Gauss to round-off
                          Gauss2Sweeps1, Gauss2Sweeps2, Gauss2Tol6,                    // and not
                          LieEuler, Rkmk4, CommutatorFree4>;                           // Lie group
-using Rivals = Types<OdeintRk4, OdeintDopri5, Cvode<true>, Cvode<false>>;
+using Rivals = Types<OdeintRk4, OdeintCashKarp54, OdeintDopri5, OdeintRkf78, OdeintBulirschStoer, OdeintAbm8,  // Boost
+                     Cvode<true>, Cvode<false>, ArkodeErk<4>, ArkodeErk<5>, ArkodeErk<8>>;  // SUNDIALS
 
 }  // namespace polhode

@@ -4,10 +4,12 @@
 /// An integrator is a type with the facts `info` and `bind(problem, control, policy)`, which returns a stepper:
 ///   advance(x, t, t_end) -> Status   moves the state from t to t_end [s]; allocates nothing
 ///   restart()                        the field has jumped or x was changed from outside: forget history
+///   begin()                          if there: a new run, forget the step size, too; otherwise restart() says it all
 ///   work()                           counts since bind
 /// Methods that choose their own steps also have step(x, t, t_end): one accepted step, t moves.
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 
 #include "integrators/norm_policy.hpp"
@@ -31,8 +33,8 @@ struct Adaptive {
 struct Work {
   std::int64_t steps = 0;  ///< accepted
   std::int64_t rejected = 0;
-  std::int64_t iterations = 0;  ///< sweeps of a fixed point, or nonlinear iterations
-  std::int64_t jacobians = 0;
+  std::optional<std::int64_t> iterations;  ///< sweeps of a fixed point, or nonlinear iterations; null if explicit
+  std::optional<std::int64_t> jacobians;   ///< null for methods that use none
 };
 
 enum class Family { explicit_rk, gauss, lie_group, rigid_body, splitting, exact, taylor, library };
@@ -61,7 +63,8 @@ struct MethodInfo {
   bool rival = false;
   std::string_view source;
   std::string_view pitfall = "";
-  std::string_view no_projection = "";  ///< why policy `project` is refused
+  std::string_view no_projection = "";  ///< why policies `project` and `project_multiplier` are refused
+  bool projects_natively = false;       ///< knows policy `native`
   std::string_view not_built = "";      ///< why this binary refuses it
 };
 
@@ -148,7 +151,8 @@ class Fixed {
     Field p = *problem_;
     for (std::int64_t i = 0; i < n; ++i) {
       method_.step(p, S(t + R(double(i)) * h), h, y, frame, memory);
-      if (policy_ == NormPolicy::project) projections_.template apply<M>(y);
+      if (policy_ != NormPolicy::none) [[unlikely]]
+        projections_.template apply<M>(y, policy_);
     }
     x = y;
     memory_ = memory;

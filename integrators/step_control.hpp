@@ -64,8 +64,8 @@ class Controlled {
         slope_ = new_slope;
         t = last ? t_end : R(t + h);
         ++work_.steps;
-        if (policy_ == NormPolicy::project) {
-          projections_.template apply<M>(x);
+        if (policy_ != NormPolicy::none) {
+          projections_.template apply<M>(x, policy_);
           fresh_slope_ = false;
         }
         return Status::ok;
@@ -81,6 +81,11 @@ class Controlled {
   void restart() {
     fresh_slope_ = false;
     last_size_ = 1e-4;
+  }
+  /// A new run: the step size is forgotten, too.
+  void begin() {
+    restart();
+    h_ = R(0.0);
   }
   Work work() const { return work_; }
   Projections projections() const { return projections_; }

@@ -21,46 +21,46 @@ struct TaylorSegment {
 /// fails   h = 0 if the series has no radius of convergence to speak of or is not finite
 template <class R, int degree, Problem P>
   requires FlatSpace<typename P::Space> && std::same_as<typename P::Space::Scalar, Jet<R, degree>>
-TaylorSegment<R, degree> expand(P const& p, std::vector<R> const& state, R const& t, R const& longest,
-                                double tolerance) {
-  using M = typename P::Space;
-  using Series = Jet<R, degree>;
-  std::vector<Series> x(state.begin(), state.end());
-  std::vector<Series> rate(x.size());
-  Series time(t);
-  auto const largest = [&](int k) {
-    double most = 0;
-    for (Series const& component : x) {
-      double const size = std::fabs(double(component[k]));
-      if (!(size <= most)) most = size;  // a NaN is the largest of all
+      TaylorSegment<R, degree> expand(P const& p, std::vector<R> const& state, R const& t, R const& longest,
+                                      double tolerance) {
+    using M = typename P::Space;
+    using Series = Jet<R, degree>;
+    std::vector<Series> x(state.begin(), state.end());
+    std::vector<Series> rate(x.size());
+    Series time(t);
+    auto const largest = [&](int k) {
+      double most = 0;
+      for (Series const& component : x) {
+        double const size = std::fabs(double(component[k]));
+        if (!(size <= most)) most = size;  // a NaN is the largest of all
+      }
+      return most;
+    };
+    double const size = std::max(1.0, largest(0));
+    double const span = double(longest);
+    int top = 0;
+    for (int small = 0; top < degree && small < 2;) {
+      Point<M> point;
+      load(point, x.data());
+      store(M::rate(point, p(time, point)), rate.data());
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        x[i].degree = top + 1;
+        x[i][top + 1] = (rate[i].degree >= top ? rate[i][top] : R(0.0)) / R(double(top + 1));
+      }
+      ++top;
+      time.degree = top;
+      time[1] = R(1.0);
+      small = largest(top) * std::pow(span, top) < tolerance * size ? small + 1 : 0;
     }
-    return most;
-  };
-  double const size = std::max(1.0, largest(0));
-  double const span = double(longest);
-  int top = 0;
-  for (int small = 0; top < degree && small < 2;) {
-    Point<M> point;
-    load(point, x.data());
-    store(M::rate(point, p(time, point)), rate.data());
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      x[i].degree = top + 1;
-      x[i][top + 1] = (rate[i].degree >= top ? rate[i][top] : R(0.0)) / R(double(top + 1));
-    }
-    ++top;
-    time.degree = top;
-    time[1] = R(1.0);
-    small = largest(top) * std::pow(span, top) < tolerance * size ? small + 1 : 0;
-  }
 
-  double h = span;
-  for (int k : {top - 1, top}) {
-    double const last = largest(k);
-    if (!std::isfinite(last)) h = 0;
-    if (last > 0) h = std::min(h, std::pow(tolerance * size / last, 1.0 / k));
+    double h = span;
+    for (int k : {top - 1, top}) {
+      double const last = largest(k);
+      if (!std::isfinite(last)) h = 0;
+      if (last > 0) h = std::min(h, std::pow(tolerance * size / last, 1.0 / k));
+    }
+    bool const reaches = h >= span * (1 - 1e-12);
+    return {t, reaches ? longest : R(h), std::move(x)};
   }
-  bool const reaches = h >= span * (1 - 1e-12);
-  return {t, reaches ? longest : R(h), std::move(x)};
-}
 
 }  // namespace polhode

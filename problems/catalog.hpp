@@ -29,6 +29,7 @@ using Problems = Types<
     >;
 // clang-format on
 
-using Formulations = Types<Formulation<FlatQuaternion>, Formulation<S3>, Formulation<SO3>>;
+using Formulations =
+    Types<Formulation<FlatQuaternion>, Formulation<S3>, Formulation<SO3>, Formulation<FlatRotation>>;
 
 }  // namespace polhode

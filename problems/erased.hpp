@@ -27,6 +27,9 @@ class Erased {
   virtual void show(Point<M> const& x, std::span<double> out) const = 0;
   /// Announced times at which the field is not smooth [s], ascending: steps land on them, methods restart.
   virtual std::vector<double> time_events() const = 0;
+  /// The event at t has come: from now on the field is that of the next phase. A problem with time events switches here
+  /// and not by comparing t, for the last stage of the step before the event looks at the field at t, too.
+  virtual void enter_phase(Real<S> const& t) = 0;
 
   Velocity<M> operator()(S const& t, Point<M> const& x) const {
     ++evaluations_;
@@ -60,6 +63,9 @@ class ErasedAs final : public Erased<typename P::Space> {
       return problem_.time_events();
     else
       return {};
+  }
+  void enter_phase([[maybe_unused]] Real<S> const& t) override {
+    if constexpr (requires { problem_.enter_phase(t); }) problem_.enter_phase(t);
   }
 
  protected:

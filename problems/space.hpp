@@ -151,21 +151,10 @@ struct S3 : Rotations<S, Quat<S>>, UnitQuaternion<S> {
   }
 };
 
-/// Formulation `so3`: rotation matrices as a group.   R exp(hat u)
+/// The defect and the projection that both descriptions by a matrix share.
 template <class S>
-struct SO3 : Rotations<S, Mat3<S>> {
-  static constexpr std::string_view name = "so3";
-  template <class T>
-  using Over = SO3<T>;  ///< the same space over another scalar
+struct OrthogonalMatrix {
   static constexpr bool constrained = true;
-  static POLHODE_INLINE Mat3<S> retract(Mat3<S> const& m, Vec3<S> const& u) { return m * matrix(exp_quaternion(u)); }
-  static Vec3<S> local(Mat3<S> const& m, Mat3<S> const& y) {
-    return log_quaternion(
-        quaternion(Mat3<S>{transposed_times(m, y.e1), transposed_times(m, y.e2), transposed_times(m, y.e3)}));
-  }
-  static POLHODE_INLINE void retract_exactly(Mat3<S>& m, Vec3<S> const& sum, Vec3<S> const& rest, Vec3<S>&) {
-    m = retract(m, sum + rest);
-  }
   /// Frobenius norm of R^T R - 1.
   static S defect(Mat3<S> const& m) {
     Mat3<S> const g = gram(m);
@@ -201,6 +190,35 @@ struct SO3 : Rotations<S, Mat3<S>> {
   }
   static Quat<S> attitude(Mat3<S> const& m) { return quaternion(m); }
   static Mat3<S> from_attitude(Quat<S> const& q) { return matrix(q); }
+};
+
+/// Formulation `so3`: rotation matrices as a group.   R exp(hat u)
+template <class S>
+struct SO3 : Rotations<S, Mat3<S>>, OrthogonalMatrix<S> {
+  static constexpr std::string_view name = "so3";
+  template <class T>
+  using Over = SO3<T>;  ///< the same space over another scalar
+  static POLHODE_INLINE Mat3<S> retract(Mat3<S> const& m, Vec3<S> const& u) { return m * matrix(exp_quaternion(u)); }
+  static Vec3<S> local(Mat3<S> const& m, Mat3<S> const& y) {
+    return log_quaternion(
+        quaternion(Mat3<S>{transposed_times(m, y.e1), transposed_times(m, y.e2), transposed_times(m, y.e3)}));
+  }
+  static POLHODE_INLINE void retract_exactly(Mat3<S>& m, Vec3<S> const& sum, Vec3<S> const& rest, Vec3<S>&) {
+    m = retract(m, sum + rest);
+  }
+};
+
+/// Formulation `rotation`: nine numbers, nobody holds the orthogonality.   chart R, velocity omega, R' = R hat(omega)
+template <class S>
+struct FlatRotation : Flat<S, Mat3<S>>, OrthogonalMatrix<S> {
+  static constexpr std::string_view name = "rotation";
+  template <class T>
+  using Over = FlatRotation<T>;  ///< the same space over another scalar
+  using Velocity = Vec3<S>;
+  static POLHODE_INLINE Mat3<S> rate(Mat3<S> const& m, Velocity const& w) {
+    return {w.z * m.e2 - w.y * m.e3, w.x * m.e3 - w.z * m.e1, w.y * m.e1 - w.x * m.e2};
+  }
+  static POLHODE_INLINE Mat3<S> chart_rate(Mat3<S> const&, Mat3<S> const& u, Velocity const& w) { return rate(u, w); }
 };
 
 /// Two spaces as one; the defect is the greater of the two.

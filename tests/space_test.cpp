@@ -202,7 +202,7 @@ TEST(ProjectPolicy, IsRenormalisationAndThePapersEquation16) {
 
     Projections projections;
     Quat<double> projected = q;
-    projections.apply<FlatQuaternion<double>>(projected);
+    projections.apply<FlatQuaternion<double>>(projected, NormPolicy::project);
     worst_renormalised = std::max(worst_renormalised, ulps_apart(projected, renormalised));
     worst_paper = std::max(worst_paper, ulps_apart(projected, paper));
     double const defect = double(S3<Quad>::defect(in<Quad>(projected)));
@@ -221,8 +221,8 @@ TEST(ProjectPolicy, CountsAndReportsTheRawDefect) {
   using M = RigidBody<FlatQuaternion<double>>;
   Projections projections;
   Point<M> big{{0, 3, 0, 4}, {0, 0, 0}}, small{{0, 0, 0, 0.5}, {0, 0, 0}};
-  projections.apply<M>(big);
-  projections.apply<M>(small);
+  projections.apply<M>(big, NormPolicy::project);
+  projections.apply<M>(small, NormPolicy::project);
   EXPECT_EQ(projections.count, 2);
   EXPECT_EQ(projections.raw_defect, 24);  // the greatest, before it was hidden
   EXPECT_EQ(projections.work, 4.5);

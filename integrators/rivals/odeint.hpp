@@ -2,10 +2,15 @@
 /// Boost.Odeint behind our face, unmodified: its state is std::array<double, n>, the flat coordinates in storage order.
 /// Source: Ahnert & Mulansky (2011), Odeint - solving ordinary differential equations in C++; Boost 1.74
 #include <array>
+#include <boost/numeric/odeint/stepper/adams_bashforth_moulton.hpp>
+#include <boost/numeric/odeint/stepper/bulirsch_stoer.hpp>
 #include <boost/numeric/odeint/stepper/controlled_runge_kutta.hpp>
 #include <boost/numeric/odeint/stepper/generation.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta4_classic.hpp>
+#include <boost/numeric/odeint/stepper/runge_kutta_cash_karp54.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
+#include <boost/numeric/odeint/stepper/runge_kutta_fehlberg78.hpp>
+#include <optional>
 
 #include "integrators/integrator.hpp"
 
@@ -44,35 +49,34 @@ class OdeintFixed {
     load(x, y.data());
     return all_finite(x) ? Status::ok : Status::diverged;
   }
-  void restart() { stepper_ = {}; }
+  void restart() { stepper_.emplace(); }
   Work work() const { return work_; }
   Projections projections() const { return projections_; }
 
  private:
   void step(typename OdeintSystem<P>::State& y, double t, double h) {
-    stepper_.do_step(system_, y, t, h);
+    stepper_->do_step(system_, y, t, h);
     ++work_.steps;
-    if (policy_ != NormPolicy::project) return;
+    if (policy_ == NormPolicy::none) return;
     Point<M> x;
     load(x, y.data());
-    projections_.template apply<M>(x);
+    projections_.template apply<M>(x, policy_);
     store(x, y.data());
-    stepper_ = {};  // a method that reuses its last slope must not: the state moved
+    stepper_.emplace();  // a method that reuses its last slope must not: the state moved
   }
 
   OdeintSystem<P> system_;
   double h_;
   NormPolicy policy_;
-  OdeintStepper stepper_;
+  std::optional<OdeintStepper> stepper_{std::in_place};  // made anew in place: Odeint never initialises its buffers
   Work work_;
   Projections projections_;
 };
 
-/// Odeint's own error control around its Dormand-Prince pair, stepped as its integrate_adaptive does.
-template <class OdeintPair, Problem P>
+/// Odeint's own error control, stepped as its integrate_adaptive does. Controller is made from (atol, rtol).
+template <class ControlledStepper, Problem P>
 class OdeintControlled {
   using M = typename P::Space;
-  using ControlledStepper = typename boost::numeric::odeint::result_of::make_controlled<OdeintPair>::type;
 
  public:
   OdeintControlled(P const& problem, Adaptive control, NormPolicy policy)
@@ -96,8 +100,8 @@ class OdeintControlled {
         if (last) t = t_end;
         if (!last || h < tried || tried == h_) h_ = h;  // a step cut short says little about the next one
         load(x, y.data());
-        if (policy_ == NormPolicy::project) {
-          projections_.template apply<M>(x);
+        if (policy_ != NormPolicy::none) {
+          projections_.template apply<M>(x, policy_);
           stepper_ = make();
         }
         return all_finite(x) ? Status::ok : Status::diverged;
@@ -109,64 +113,118 @@ class OdeintControlled {
     return Status::max_steps;
   }
   void restart() { stepper_ = make(); }
+  /// A new run: the step size is forgotten, too.
+  void begin() {
+    restart();
+    h_ = first_step;
+  }
   Work work() const { return work_; }
   Projections projections() const { return projections_; }
 
  private:
   static constexpr int most_trials = 1000;
+  static constexpr double first_step = 0.01;  ///< [s]; Odeint asks its user for one, and corrects it within a few steps
   ControlledStepper make() const {
-    return boost::numeric::odeint::make_controlled(control_.atol, control_.rtol, OdeintPair{});
+    if constexpr (requires { typename ControlledStepper::error_checker_type; })
+      return boost::numeric::odeint::make_controlled(control_.atol, control_.rtol,
+                                                     typename ControlledStepper::stepper_type{});
+    else
+      return ControlledStepper(control_.atol, control_.rtol);  // Bulirsch-Stoer is its own controller
   }
 
   OdeintSystem<P> system_;
   Adaptive control_;
   NormPolicy policy_;
   ControlledStepper stepper_;
-  double h_ = 0.01;  ///< Odeint asks its user for a first step; its control corrects it within a few
+  double h_ = first_step;
   Work work_;
   Projections projections_;
 };
 
 namespace odeint_detail {
+namespace odeint = boost::numeric::odeint;
+template <class P>
+concept Suits = Problem<P> && FlatSpace<typename P::Space> && std::same_as<typename P::Space::Scalar, double>;
+
 template <Problem P>
 using State = typename OdeintSystem<P>::State;
 template <Problem P>
-using Kutta4 = boost::numeric::odeint::runge_kutta4_classic<State<P>>;
+using Kutta4 = odeint::runge_kutta4_classic<State<P>>;
 template <Problem P>
-using Dopri5 = boost::numeric::odeint::runge_kutta_dopri5<State<P>>;
-template <class P>
-concept Suits = Problem<P> && FlatSpace<typename P::Space> && std::same_as<typename P::Space::Scalar, double>;
-}  // namespace odeint_detail
+using CashKarp54 = odeint::runge_kutta_cash_karp54<State<P>>;
+template <Problem P>
+using Dopri5 = odeint::runge_kutta_dopri5<State<P>>;
+template <Problem P>
+using Fehlberg78 = odeint::runge_kutta_fehlberg78<State<P>>;
+/// Eight steps of Adams-Bashforth-Moulton need eight starting values as good as themselves: from Fehlberg's pair, not
+/// from the default, RK4, which would hold the method down to order 4 after every restart.
+template <Problem P>
+using Abm8 = odeint::adams_bashforth_moulton<8, State<P>, double, State<P>, double, odeint::array_algebra,
+                                             odeint::default_operations, odeint::initially_resizer, Fehlberg78<P>>;
+template <Problem P>
+using BulirschStoer = odeint::bulirsch_stoer<State<P>>;
 
-struct OdeintRk4 {
-  static constexpr MethodInfo info{.name = "odeint_rk4",
-                                   .family = Family::library,
-                                   .order = 4,
-                                   .needs = Needs::flat,
-                                   .rival = true,
-                                   .source = "Boost.Odeint 1.74, runge_kutta4_classic on std::array"};
-  template <odeint_detail::Suits P>
+/// What the entries below share: a stepper template, driven fixed.
+template <template <class> class Stepper>
+struct RunsFixedSteps {
+  template <Suits P>
   auto bind(P const& p, FixedStep control, NormPolicy policy) const {
-    return OdeintFixed<odeint_detail::Kutta4<P>, P>(p, control, policy);
+    return OdeintFixed<Stepper<P>, P>(p, control, policy);
+  }
+};
+/// The same, and under Odeint's error control.
+template <template <class> class Pair>
+struct RunsBoth : RunsFixedSteps<Pair> {
+  using RunsFixedSteps<Pair>::bind;
+  template <Suits P>
+  auto bind(P const& p, Adaptive control, NormPolicy policy) const {
+    return OdeintControlled<typename odeint::result_of::make_controlled<Pair<P>>::type, P>(p, control, policy);
   }
 };
 
-struct OdeintDopri5 {
-  static constexpr MethodInfo info{.name = "odeint_dopri5",
-                                   .family = Family::library,
-                                   .order = 5,
-                                   .needs = Needs::flat,
-                                   .rival = true,
-                                   .source = "Boost.Odeint 1.74, runge_kutta_dopri5 on std::array, make_controlled",
-                                   .pitfall = "reuses its last slope: must be restarted wherever the field jumps"};
-  template <odeint_detail::Suits P>
-  auto bind(P const& p, FixedStep control, NormPolicy policy) const {
-    return OdeintFixed<odeint_detail::Dopri5<P>, P>(p, control, policy);
-  }
+constexpr MethodInfo info(std::string_view name, int order, std::string_view source, std::string_view pitfall = "",
+                          std::string_view no_projection = "") {
+  return {.name = name,
+          .family = Family::library,
+          .order = order,
+          .needs = Needs::flat,
+          .rival = true,
+          .source = source,
+          .pitfall = pitfall,
+          .no_projection = no_projection};
+}
+}  // namespace odeint_detail
+
+struct OdeintRk4 : odeint_detail::RunsFixedSteps<odeint_detail::Kutta4> {
+  static constexpr MethodInfo info =
+      odeint_detail::info("odeint_rk4", 4, "Boost.Odeint 1.74, runge_kutta4_classic on std::array");
+};
+struct OdeintCashKarp54 : odeint_detail::RunsBoth<odeint_detail::CashKarp54> {
+  static constexpr MethodInfo info =
+      odeint_detail::info("odeint_cash_karp54", 5, "Boost.Odeint 1.74, runge_kutta_cash_karp54, make_controlled");
+};
+struct OdeintDopri5 : odeint_detail::RunsBoth<odeint_detail::Dopri5> {
+  static constexpr MethodInfo info =
+      odeint_detail::info("odeint_dopri5", 5, "Boost.Odeint 1.74, runge_kutta_dopri5, make_controlled",
+                          "reuses its last slope: must be restarted wherever the field jumps");
+};
+struct OdeintRkf78 : odeint_detail::RunsBoth<odeint_detail::Fehlberg78> {
+  static constexpr MethodInfo info =
+      odeint_detail::info("odeint_rkf78", 8, "Boost.Odeint 1.74, runge_kutta_fehlberg78, make_controlled",
+                          "the error estimate vanishes for quadratures");
+};
+struct OdeintBulirschStoer {
+  static constexpr MethodInfo info =
+      odeint_detail::info("odeint_bulirsch_stoer", 0, "Boost.Odeint 1.74, bulirsch_stoer");
   template <odeint_detail::Suits P>
   auto bind(P const& p, Adaptive control, NormPolicy policy) const {
-    return OdeintControlled<odeint_detail::Dopri5<P>, P>(p, control, policy);
+    return OdeintControlled<odeint_detail::BulirschStoer<P>, P>(p, control, policy);
   }
+};
+struct OdeintAbm8 : odeint_detail::RunsFixedSteps<odeint_detail::Abm8> {
+  static constexpr MethodInfo info = odeint_detail::info(
+      "odeint_abm8", 8, "Boost.Odeint 1.74, adams_bashforth_moulton<8>, started by Fehlberg 7(8)",
+      "eight starting steps after every restart", "projection would break the history that the next step extrapolates");
 };
 
 }  // namespace polhode

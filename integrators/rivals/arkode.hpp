@@ -1,0 +1,132 @@
+#pragma once
+/// SUNDIALS ARKODE's explicit Runge-Kutta module (ERKStep) behind our face, unmodified, at its default controller.
+/// Memory is made in bind and lives across advance calls; restart() re-initialises at the next call. double, flat
+/// coordinates.   Source: Reynolds et al. (2023), ACM TOMS 49, 16; SUNDIALS 6.4
+#include "integrators/rivals/cvode.hpp"
+
+#ifdef POLHODE_HAS_SUNDIALS
+#include <arkode/arkode_erkstep.h>
+#endif
+
+namespace polhode {
+
+#ifdef POLHODE_HAS_SUNDIALS
+template <Problem P>
+class ErkStepper {
+  using M = typename P::Space;
+
+ public:
+  ErkStepper(int order, P const& problem, Adaptive control, NormPolicy) : ErkStepper(order, problem) {
+    require(ERKStepSStolerances(memory_.get(), control.rtol, control.atol));
+  }
+  ErkStepper(int order, P const& problem, FixedStep control, NormPolicy) : ErkStepper(order, problem) {
+    require(ERKStepSetFixedStep(memory_.get(), control.h));
+    fixed_ = control.h;
+  }
+
+  /// x is read at a restart; between restarts ARKODE's own state goes on.
+  Status advance(Point<M>& x, double t, double t_end) { return go(x, t, t_end, ARK_NORMAL); }
+  Status step(Point<M>& x, double& t, double t_end) { return go(x, t, t_end, ARK_ONE_STEP); }
+  void restart() { fresh_ = true; }
+  Work work() const {
+    Work sum = before_;
+    add_counters(sum);
+    return sum;
+  }
+  Projections projections() const { return {}; }
+
+ private:
+  ErkStepper(int order, P const& problem) {
+    y_.reset(N_VNew_Serial(Chart<M>::size, context_.get()));
+    if (!y_) throw std::bad_alloc();
+    N_VConst(0, y_.get());
+    memory_.reset(ERKStepCreate(field, 0, y_.get(), context_.get()));
+    if (!memory_) throw std::bad_alloc();
+    require(ERKStepSetUserData(memory_.get(), const_cast<P*>(&problem)));
+    require(ERKStepSetOrder(memory_.get(), order));
+    require(ERKStepSetMaxNumSteps(memory_.get(), most_steps));
+  }
+  static void require(int code) {
+    if (code != ARK_SUCCESS) throw std::bad_alloc();
+  }
+  Status go(Point<M>& x, double& t, double t_end, int task) {
+    store(x, N_VGetArrayPointer(y_.get()));
+    if (std::exchange(fresh_, false)) {
+      add_counters(before_);
+      ERKStepReInit(memory_.get(), field, t, y_.get());
+      // A re-initialised fixed step was shortened by the last stop time.
+      if (fixed_ > 0) ERKStepSetFixedStep(memory_.get(), fixed_);
+    }
+    ERKStepSetStopTime(memory_.get(), t_end);
+    int const code = ERKStepEvolve(memory_.get(), t_end, y_.get(), &t, task);
+    load(x, N_VGetArrayPointer(y_.get()));
+    if (code == ARK_SUCCESS || code == ARK_TSTOP_RETURN) return all_finite(x) ? Status::ok : Status::diverged;
+    if (code == ARK_TOO_MUCH_WORK) return Status::max_steps;
+    if (code == ARK_ERR_FAILURE || code == ARK_TOO_MUCH_ACC) return Status::step_underflow;
+    return Status::diverged;
+  }
+  void add_counters(Work& sum) const {
+    long steps = 0, failures = 0;
+    ERKStepGetNumSteps(memory_.get(), &steps);
+    ERKStepGetNumErrTestFails(memory_.get(), &failures);
+    sum.steps += steps;
+    sum.rejected += failures;
+  }
+  static int field(double t, N_Vector y, N_Vector dydt, void* problem) {
+    Point<M> x;
+    load(x, N_VGetArrayPointer(y));
+    store(M::rate(x, (*static_cast<P const*>(problem))(t, x)), N_VGetArrayPointer(dydt));
+    return 0;
+  }
+
+  static constexpr long most_steps = 10'000'000;
+  struct Free {
+    void operator()(SUNContext context) const { SUNContext_Free(&context); }
+    void operator()(N_Vector v) const { N_VDestroy(v); }
+    void operator()(void* memory) const { ERKStepFree(&memory); }
+  };
+  static SUNContext make_context() {
+    SUNContext context = nullptr;
+    if (SUNContext_Create(nullptr, &context) != 0) throw std::bad_alloc();
+    return context;
+  }
+  std::unique_ptr<std::remove_pointer_t<SUNContext>, Free> context_{make_context()};
+  std::unique_ptr<std::remove_pointer_t<N_Vector>, Free> y_;
+  std::unique_ptr<void, Free> memory_;
+  double fixed_ = 0;
+  bool fresh_ = true;
+  Work before_;
+};
+#endif
+
+/// ARKODE's default explicit table of each order: Zonneveld 5(3)4, Cash-Karp 6(4)5, Fehlberg 13(7)8.
+template <int order>
+struct ArkodeErk {
+  static_assert(order == 4 || order == 5 || order == 8);
+  static constexpr MethodInfo info{
+      .name = order == 4   ? "arkode_erk4"
+              : order == 5 ? "arkode_erk5"
+                           : "arkode_erk8",
+      .family = Family::library,
+      .order = order,
+      .needs = Needs::flat,
+      .rival = true,
+      .source = "SUNDIALS 6.4 ARKODE, ERKStep; Reynolds et al. (2023)",
+      .pitfall = "its default safety factors are cautious",
+      .no_projection = "ARKODE keeps its own state: projecting it between steps means starting anew",
+      .not_built = sundials_not_built};
+#ifdef POLHODE_HAS_SUNDIALS
+  template <Problem P>
+    requires FlatSpace<typename P::Space> && std::same_as<typename P::Space::Scalar, double>
+  auto bind(P const& p, Adaptive control, NormPolicy policy) const {
+    return ErkStepper<P>(order, p, control, policy);
+  }
+  template <Problem P>
+    requires FlatSpace<typename P::Space> && std::same_as<typename P::Space::Scalar, double>
+  auto bind(P const& p, FixedStep control, NormPolicy policy) const {
+    return ErkStepper<P>(order, p, control, policy);
+  }
+#endif
+};
+
+}  // namespace polhode
