@@ -102,7 +102,8 @@ Held hold_golden(Bound const& bound, CheckedCell const& cell, GoldenByCell const
   std::string const failure = failure_of(*cell.record);
   bool const explain = !value && !failure.empty();
   double const excess = results::deviation(tolerance_of(bound), expected, value) - 1;
-  Held held = judged(cell, excess, fmt::format("{} (golden {})", explain ? failure : json.dump(), shown));
+  std::string const measured = explain ? failure : value ? fmt::format("{:.6g}", *value) : "null";
+  Held held = judged(cell, excess, fmt::format("{} (golden {})", measured, shown));
   held.comparable = expected || value;
   return held;
 }
