@@ -127,8 +127,8 @@ TEST(Order, OfEveryRivalWithFixedSteps) {
   for (bench::IntegratorWord const& word : bench::vocabulary().integrators) {
     if (!word.rival || !word.fixed || !word.order || !word.not_built.empty()) continue;
     std::vector<Point2> points;
-    for (int k = -1; k >= -7; --k) {
-      double const h = std::ldexp(1, k);
+    for (double steps_a_second : {1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0, 48.0, 64.0, 96.0, 128.0}) {
+      double const h = 1 / steps_a_second;
       auto cell = brisk_slew().cell;
       cell.cell.formulation = "quaternion";
       cell.cell.integrator = word.name;
@@ -136,11 +136,13 @@ TEST(Order, OfEveryRivalWithFixedSteps) {
       ASSERT_EQ(run.status, results::Status::ok);
       auto const& row = run.history.rows.back();
       double const error = double(angle_between(Quat<Quad>{row[0], row[1], row[2], row[3]}, brisk_slew().end.q));
-      if (error > 1e-12) points.push_back({std::log(h), std::log(error)});
+      if (2e-13 < error && error < 1e-4)  // round-off is below 7e-15
+        points.push_back({std::log(h), std::log(error)});
     }
     ASSERT_GE(points.size(), 3u) << word.name;
-    if (points.size() > 4) points.erase(points.begin(), points.end() - 4);  // the finest four are asymptotic
-    EXPECT_NEAR(slope_of(points), *word.order, 0.1) << word.name;
+    if (points.size() > 3) points.erase(points.begin(), points.end() - 3);  // the finest are the most asymptotic
+    // Between the leading term and round-off double precision leaves orders 7 and 8 less than a decade of steps.
+    EXPECT_NEAR(slope_of(points), *word.order, *word.order < 7 ? 0.1 : 0.2) << word.name;
     ++checked;
   }
   EXPECT_GE(checked, 2);
