@@ -34,10 +34,10 @@ TEST_P(AdaptiveRival, AgreesWithTheReference) {
 
 TEST_P(AdaptiveRival, CountsWhatItDoes) {
   auto const record = a_cell("pd_slew", "quaternion", GetParam()).with_rtol(1e-8).measured().record;
-  EXPECT_GT(*record.steps, 20);
+  EXPECT_GT(*record.steps, 5);  // extrapolation takes few, long steps of many evaluations
   EXPECT_LT(*record.steps, 20'000);
   EXPECT_GE(*record.evaluations, *record.steps);
-  EXPECT_LT(*record.evaluations, 20 * (*record.steps + *record.rejected));
+  EXPECT_LT(*record.evaluations, 100 * (*record.steps + *record.rejected));
   EXPECT_LE(*record.rejected, *record.steps);
   bool const newton = GetParam() == "cvode_bdf";
   EXPECT_EQ(record.jacobians.value_or(0) > 0, newton);
