@@ -195,6 +195,17 @@ std::string without(std::string const& variant, std::vector<std::string> const& 
   return kept;
 }
 
+/// A schedule is kept in memory: a slip in a period must not fill it.
+void check_number_of_stops(Schedule const& schedule) {
+  constexpr double most = 1e7;
+  for (double const period : {schedule.sample_period, schedule.output_period})
+    if (period > 0 && schedule.t_end / period > most)
+      throw UsageError(
+          fmt::format("{:g} s in intervals of {:g} s are more than {:.0f}; shorten t_end or lengthen the "
+                      "interval",
+                      schedule.t_end, period, most));
+}
+
 }  // namespace
 
 std::vector<Column> columns_of(ChosenProblem const& problem) {
@@ -229,6 +240,7 @@ PreparedCell prepare(results::Cell cell, double every) {
   prepared.schedule = {.t_end = cell.t_end, .sample_period = period, .jumps = {}, .output_period = every};
   ProblemInFormulation const problem = prepared.problem->in(cell.formulation);
   std::visit([&](auto const& field) { prepared.schedule.jumps = field->time_events(); }, problem);
+  check_number_of_stops(prepared.schedule);
   prepared.plan.stops = stops_of(prepared.schedule);
   prepared.plan.policy = policy_named(cell.policy);
   if (cell.h)

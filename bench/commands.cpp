@@ -8,129 +8,13 @@
 #include <cstdio>
 #include <fstream>
 #include <memory>
-#include <nlohmann/json.hpp>
+#include <set>
 
 #include "bench/cell.hpp"
 #include "results/store.hpp"
 
 namespace polhode::bench {
 namespace {
-
-// ---- list -----------------------------------------------------------------------------------------------------------
-
-nlohmann::ordered_json to_json(IntegratorWord const& word) {
-  nlohmann::ordered_json json{{"name", word.name}, {"family", word.family}};
-  json["order"] = word.order && word.fixed ? nlohmann::ordered_json(*word.order) : nlohmann::ordered_json();
-  json["adaptive_only"] = word.adaptive && !word.fixed;
-  json["rival"] = word.rival;
-  json["preserves"] = word.preserves;
-  json["needs"] = word.needs;
-  json["source"] = word.source;
-  json["pitfall"] = word.pitfall;
-  if (!word.not_built.empty()) json["not_built"] = word.not_built;
-  return json;
-}
-
-nlohmann::ordered_json to_json(ProblemWord const& word) {
-  nlohmann::ordered_json json{{"name", word.name},
-                              {"variants", word.variants},
-                              {"formulations", word.formulations},
-                              {"parameters", nlohmann::ordered_json::array()},
-                              {"events", word.events},
-                              {"claims", word.claims},
-                              {"summary", word.summary},
-                              {"source", word.source}};
-  for (ParameterWord const& parameter : word.parameters) {
-    nlohmann::ordered_json value = parameter.value;
-    if (parameter.value.size() == 1) value = parameter.value[0];
-    json["parameters"].push_back({{"name", parameter.name}, {"unit", parameter.unit}, {"default", value}});
-  }
-  return json;
-}
-
-std::vector<std::string> suite_names() {
-  std::vector<std::string> names;
-  if (!std::filesystem::is_directory(suites_folder())) return names;
-  for (auto const& entry : std::filesystem::directory_iterator(suites_folder()))
-    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem());
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-std::string variants_text(ProblemWord const& word) {
-  std::vector<std::string> groups;
-  for (auto const& group : word.variants) {
-    std::string text;
-    for (std::string const& choice : group)
-      if (!choice.empty()) text += (text.empty() ? "" : "|") + choice;
-    groups.push_back(group.front().empty() ? "[" + text + "]" : text);
-  }
-  return groups.empty() ? "-" : fmt::format("{}", fmt::join(groups, " "));
-}
-
-void list_integrators(bool as_json) {
-  auto const& words = vocabulary().integrators;
-  if (as_json) {
-    nlohmann::ordered_json json = nlohmann::ordered_json::array();
-    for (IntegratorWord const& word : words) json.push_back(to_json(word));
-    fmt::print("{}\n", json.dump(1));
-    return;
-  }
-  fmt::print("{:<16} {:<12} {:>5}  {:<8} {:<6} {:<34} {}\n", "name", "family", "order", "steps", "needs", "keeps",
-             "source");
-  for (IntegratorWord const& word : words) {
-    char const* steps = word.fixed && word.adaptive ? "both" : word.fixed ? "fixed" : "adaptive";
-    fmt::print("{:<16} {:<12} {:>5}  {:<8} {:<6} {:<34} {}{}\n", word.name, word.family,
-               word.order ? std::to_string(*word.order) : "-", steps, word.needs,
-               word.preserves.empty() ? "-" : fmt::format("{}", fmt::join(word.preserves, ",")), word.source,
-               word.not_built.empty() ? "" : "  (" + word.not_built + ")");
-  }
-}
-
-void list_problems(bool as_json) {
-  auto const& words = vocabulary().problems;
-  if (as_json) {
-    nlohmann::ordered_json json = nlohmann::ordered_json::array();
-    for (ProblemWord const& word : words) json.push_back(to_json(word));
-    fmt::print("{}\n", json.dump(1));
-    return;
-  }
-  for (ProblemWord const& word : words) {
-    fmt::print("{}: {}\n  variants:     {}\n  formulations: {}\n  source:       {}\n  parameters:\n", word.name,
-               word.summary, variants_text(word), fmt::join(word.formulations, " "), word.source);
-    for (ParameterWord const& p : word.parameters)
-      fmt::print("    {:<14} {:g} {}\n", p.name, fmt::join(p.value, ","), p.unit);
-  }
-}
-
-void list_names(std::vector<std::string> const& names, bool as_json) {
-  if (as_json)
-    fmt::print("{}\n", nlohmann::ordered_json(names).dump(1));
-  else
-    for (std::string const& name : names) fmt::print("{}\n", name);
-}
-
-void list(std::string const& what, bool as_json) {
-  if (what == "integrators") return list_integrators(as_json);
-  if (what == "problems") return list_problems(as_json);
-  if (what == "policies") return list_names(vocabulary().policies, as_json);
-  if (what == "suites") return list_names(suite_names(), as_json);
-  if (what == "formulations") {
-    auto const names = formulation_names();
-    return list_names({names.begin(), names.end()}, as_json);
-  }
-  throw UsageError(unknown("list", what, {"problems", "formulations", "integrators", "policies", "suites"}));
-}
-
-void add_list(CLI::App& app) {
-  auto const what = std::make_shared<std::string>();
-  auto const as_json = std::make_shared<bool>(false);
-  CLI::App* verb =
-      app.add_subcommand("list", "Say what there is: problems, formulations, integrators, policies, suites");
-  verb->add_option("WHAT", *what, "problems, formulations, integrators, policies or suites")->required();
-  verb->add_flag("--json", *as_json, "As JSON");
-  verb->callback([=] { list(*what, *as_json); });
-}
 
 // ---- cells from the command line ------------------------------------------------------------------------------------
 
@@ -295,6 +179,19 @@ int thread_count(double wanted) {
   throw UsageError(fmt::format("threads = {}: a whole number from 1 to {} is wanted", wanted, most));
 }
 
+/// "2/8": the second of eight parts. Throws UsageError.
+void read_shard(std::string const& text, RunOptions& options) {
+  auto const slash = text.find('/');
+  auto const part = [&](std::size_t from, std::size_t to, int& value) {
+    auto const [end, error] = std::from_chars(text.data() + from, text.data() + to, value);
+    return error == std::errc() && end == text.data() + to;
+  };
+  bool const read = slash != std::string::npos && part(0, slash, options.shard) &&
+                    part(slash + 1, text.size(), options.shards) && 1 <= options.shard &&
+                    options.shard <= options.shards;
+  if (!read) throw UsageError(fmt::format("--shard {}: write K/N, the K-th of N parts, K from 1 to N", quote(text)));
+}
+
 /// What the cells of a suite get wrong names the suite's file.
 RunSummary run_in_file(std::filesystem::path const& file, Suite const& suite, RunOptions const& options) {
   try {
@@ -315,13 +212,16 @@ void add_run(CLI::App& app, int& code) {
                    "Regular expression over problem/variant/formulation/integrator/policy");
   verb->add_flag("--fresh", options->fresh, "Forget what the folder holds");
   verb->add_flag("--retry-failed", options->retry_failed, "Run again what failed");
-  verb->add_flag("--dry-run", options->dry_run, "Say what would run");
+  verb->add_flag("--dry-run", options->dry_run, "Say what would run, and about how long it would take");
+  auto const shard = std::make_shared<std::string>();
+  verb->add_option("--shard", *shard, "The K-th of N parts, for as many machines")->type_name("K/N");
   add_number(*verb, "--timeout", options->timeout, "Limit per cell [s]; 0 for none")->capture_default_str();
   auto const threads = std::make_shared<double>(0);
   CLI::Option* has_threads =
       add_number(*verb, "--threads", *threads, "Of the accuracy pass; default one per processor")->type_name("INT");
   verb->callback([=, &code] {
     options->out = *out;
+    if (!shard->empty()) read_shard(*shard, *options);
     bool const no_limit = !(options->timeout >= 0) || std::isinf(options->timeout);
     if (no_limit)
       throw UsageError(
@@ -351,25 +251,50 @@ void make_folder(std::filesystem::path const& folder) {
   if (error) throw ReferenceError(fmt::format("{}: cannot be made: {}", folder.string(), error.message()));
 }
 
+/// Computes, certifies and saves the reference of one cell's physics.
+void make_reference(results::Cell cell, std::filesystem::path const& folder) {
+  cell.integrator = "dopri5";  // any method serves: only the physics is used
+  cell.formulation = "quaternion";
+  cell.policy = "none";
+  cell.h.reset();
+  cell.rtol = 1e-6;
+  cell.atol.reset();
+  PreparedCell const prepared = prepare(cell);
+  make_folder(folder);
+  Reference const reference = Reference::solve(*prepared.problem, prepared.schedule);
+  Certificate const certificate = certify(prepared.physics, *prepared.problem, prepared.schedule, reference);
+  save(certificate, folder);
+  fmt::print(
+      "{}  bar {:.1e} rad  (Taylor against Gauss {:.1e}, Gauss against half its step {:.1e}{})  {}\n", certificate.id,
+      certificate.bar, certificate.disagreement, certificate.halving,
+      certificate.closed_form ? fmt::format(", Taylor against the closed form {:.1e}", *certificate.closed_form) : "",
+      certificate.subject);
+}
+
+/// One cell for each reference that the built-in suites need: their physics, without repetition.
+std::vector<results::Cell> physics_of_suites() {
+  std::vector<results::Cell> cells;
+  std::set<std::string> seen;
+  for (std::string const& name : suite_names())
+    for (SuiteCell const& wanted : read_suite(suite_file(name), vocabulary()).cells) {
+      PreparedCell const prepared = prepare(wanted.cell);
+      if (seen.insert(reference_subject(prepared.physics)).second) cells.push_back(prepared.physics);
+    }
+  return cells;
+}
+
 void add_reference(CLI::App& app) {
   auto const flags = std::make_shared<CellFlags>();
   auto const out = std::make_shared<std::string>();
-  CLI::App* verb = app.add_subcommand("reference", "Compute and certify a reference in quadruple precision");
+  CLI::App* verb = app.add_subcommand(
+      "reference", "Compute and certify a reference in quadruple precision; without PROBLEM, all that the suites need");
   flags->add_physics(*verb);
+  verb->get_option("PROBLEM")->required(false);
   verb->add_option("--out", *out, "Folder; default the committed references")->type_name("DIR");
   verb->callback([=] {
-    results::Cell cell = flags->chosen();
-    cell.integrator = "dopri5";  // any method serves: only the physics is used
-    cell.formulation = "quaternion";
-    cell.rtol = 1e-6;
-    PreparedCell const prepared = prepare(cell);
     std::filesystem::path const folder = out->empty() ? references_folder() : std::filesystem::path(*out);
-    make_folder(folder);
-    Reference const reference = Reference::solve(*prepared.problem, prepared.schedule);
-    Certificate const certificate = certify(prepared.physics, *prepared.problem, prepared.schedule, reference);
-    save(certificate, folder);
-    fmt::print("{}  bar {:.1e} rad  (Taylor against Gauss {:.1e}, Gauss against half its step {:.1e})  {}\n",
-               certificate.id, certificate.bar, certificate.disagreement, certificate.halving, certificate.subject);
+    if (!flags->cell.problem.empty()) return make_reference(flags->chosen(), folder);
+    for (results::Cell const& cell : physics_of_suites()) make_reference(cell, folder);
   });
 }
 

@@ -10,6 +10,8 @@ namespace polhode::bench {
 
 /// Adds the verbs to `app`. A verb that ran writes its exit code; mistakes are thrown.
 void add_commands(CLI::App& app, int& code);
+/// The verb list: what there is.
+void add_list(CLI::App& app);
 /// The verb check: expectations and golden columns.
 void add_check(CLI::App& app, int& code);
 /// The verbs export and merge: records in other files.

@@ -62,6 +62,18 @@ std::vector<Task> prepare_all(Suite const& suite, std::string const& filter) {
   return tasks;
 }
 
+/// Keeps every n-th cell, so that shards on equal suites are disjoint and together the whole.
+void take_shard(std::vector<Task>& tasks, RunOptions const& options) {
+  if (options.shards <= 1) return;
+  std::size_t const all = tasks.size();
+  std::vector<Task> kept;
+  for (std::size_t i = std::size_t(options.shard - 1); i < all; i += std::size_t(options.shards))
+    kept.push_back(std::move(tasks[i]));
+  tasks = std::move(kept);
+  if (tasks.empty())
+    throw NothingSelected(fmt::format("shard {}/{} of {} cells is empty", options.shard, options.shards, all));
+}
+
 /// Drops the cells that the folder already holds from this build.
 std::size_t skip_finished(std::vector<Task>& tasks, std::filesystem::path const& out, bool retry_failed) {
   results::Contents const contents = results::read(out);
@@ -89,6 +101,11 @@ results::Series history_series(Task const& task) {
     series.rows.push_back(std::move(row));
   }
   return series;
+}
+
+/// Threads of the accuracy pass.
+int processors_of(RunOptions const& options) {
+  return options.threads > 0 ? options.threads : std::max(1, int(std::thread::hardware_concurrency()));
 }
 
 /// One problem with one choice: its cells share a reference, and are timed against each other.
@@ -140,9 +157,8 @@ class Group {
         progress_.advance();
       }
     };
-    int const processors = options.threads > 0 ? options.threads : int(std::thread::hardware_concurrency());
     std::vector<std::thread> helpers;
-    for (int i = 1; i < processors; ++i) helpers.emplace_back(work);
+    for (int i = 1; i < processors_of(options); ++i) helpers.emplace_back(work);
     work();
     for (std::thread& helper : helpers) helper.join();
     if (trouble) std::rethrow_exception(trouble);
@@ -178,13 +194,30 @@ class Group {
   Progress& progress_;
 };
 
-void say_what_would_run(std::vector<Task> const& tasks) {
+/// A rough guess [s]: what a measured step, a reference and a timed cell take on a machine of today.
+double expected_time(std::vector<Task> const& tasks, Timing const& timing, int processors) {
+  constexpr double per_step = 4e-6, per_reference = 0.5, adaptive_steps = 1000;
+  double accuracy = 0, timed = 0;
+  std::set<std::string> subjects;
+  for (Task const& task : tasks) {
+    if (!task.prepared.refusal.empty()) continue;
+    results::Cell const& cell = task.prepared.cell;
+    accuracy += per_step * (cell.h ? cell.t_end / *cell.h : adaptive_steps);
+    if (timing.enabled) timed += 1.4 * timing.min_time * timing.repetitions;  // and its calibration
+    subjects.insert(reference_subject(task.prepared.physics));
+  }
+  return (accuracy + per_reference * double(subjects.size())) / processors + timed;
+}
+
+void say_what_would_run(std::vector<Task> const& tasks, Timing const& timing, RunOptions const& options) {
   for (Task const& task : tasks) {
     results::Cell const& cell = task.prepared.cell;
     std::string const control = cell.h ? fmt::format("h={:g}", *cell.h) : fmt::format("rtol={:g}", *cell.rtol);
     fmt::print("{} {} {}{}\n", task.id, path_of(cell), control,
                task.prepared.refusal.empty() ? "" : "  refused: " + task.prepared.refusal);
   }
+  int const seconds = int(std::lround(expected_time(tasks, timing, processors_of(options))));
+  fmt::print("{} cells, about {}:{:02} min\n", tasks.size(), seconds / 60, seconds % 60);
 }
 
 }  // namespace
@@ -195,25 +228,31 @@ void interruptible() {
   std::signal(SIGTERM, note);
 }
 
+std::vector<std::string> suite_names() {
+  std::vector<std::string> names;
+  if (!std::filesystem::is_directory(suites_folder())) return names;
+  for (auto const& entry : std::filesystem::directory_iterator(suites_folder()))
+    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
 std::filesystem::path suite_file(std::string const& name_or_file) {
   std::filesystem::path const built_in = suites_folder() / (name_or_file + ".toml");
   bool const is_name = name_or_file.find_first_of("./") == std::string::npos;
   if (is_name && std::filesystem::exists(built_in)) return built_in;
   if (!is_name || std::filesystem::exists(name_or_file)) return name_or_file;
-  std::vector<std::string> known;
-  if (std::filesystem::is_directory(suites_folder()))
-    for (auto const& entry : std::filesystem::directory_iterator(suites_folder())) known.push_back(entry.path().stem());
-  std::sort(known.begin(), known.end());
-  throw UsageError(unknown("suite", name_or_file, known));
+  throw UsageError(unknown("suite", name_or_file, suite_names()));
 }
 
 RunSummary run_suite(Suite const& suite, RunOptions const& options) {
   std::vector<Task> tasks = prepare_all(suite, options.filter);
+  take_shard(tasks, options);
   RunSummary summary;
   summary.out = options.out.empty() ? std::filesystem::path("polhode-results") / suite.name : options.out;
   summary.cells = tasks.size();
   if (options.dry_run) {
-    say_what_would_run(tasks);
+    say_what_would_run(tasks, suite.timing, options);
     return summary;
   }
 

@@ -23,6 +23,7 @@ struct RunOptions {
   bool dry_run = false;       ///< say what would run
   double timeout = 60;        ///< per cell [s]
   int threads = 0;            ///< of the accuracy pass; 0: one per processor
+  int shard = 1, shards = 1;  ///< which of how many parts to run
 };
 
 struct RunSummary {
@@ -31,6 +32,8 @@ struct RunSummary {
   bool interrupted = false;
 };
 
+/// The names of the built-in suites, sorted.
+std::vector<std::string> suite_names();
 /// The suite of that name among the built-in ones, or that file.
 std::filesystem::path suite_file(std::string const& name_or_file);
 

@@ -1,0 +1,121 @@
+/// `polhode list`: what there is.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "bench/cell.hpp"
+#include "bench/commands.hpp"
+
+namespace polhode::bench {
+namespace {
+
+nlohmann::ordered_json to_json(IntegratorWord const& word) {
+  nlohmann::ordered_json json{{"name", word.name}, {"family", word.family}};
+  json["order"] = word.order && word.fixed ? nlohmann::ordered_json(*word.order) : nlohmann::ordered_json();
+  json["adaptive_only"] = word.adaptive && !word.fixed;
+  json["rival"] = word.rival;
+  json["preserves"] = word.preserves;
+  json["needs"] = word.needs;
+  json["source"] = word.source;
+  json["pitfall"] = word.pitfall;
+  if (!word.not_built.empty()) json["not_built"] = word.not_built;
+  return json;
+}
+
+nlohmann::ordered_json to_json(ProblemWord const& word) {
+  nlohmann::ordered_json json{{"name", word.name},
+                              {"variants", word.variants},
+                              {"formulations", word.formulations},
+                              {"parameters", nlohmann::ordered_json::array()},
+                              {"events", word.events},
+                              {"claims", word.claims},
+                              {"summary", word.summary},
+                              {"source", word.source}};
+  for (ParameterWord const& parameter : word.parameters) {
+    nlohmann::ordered_json value = parameter.value;
+    if (parameter.value.size() == 1) value = parameter.value[0];
+    json["parameters"].push_back({{"name", parameter.name}, {"unit", parameter.unit}, {"default", value}});
+  }
+  return json;
+}
+
+std::string variants_text(ProblemWord const& word) {
+  std::vector<std::string> groups;
+  for (auto const& group : word.variants) {
+    std::string text;
+    for (std::string const& choice : group)
+      if (!choice.empty()) text += (text.empty() ? "" : "|") + choice;
+    groups.push_back(group.front().empty() ? "[" + text + "]" : text);
+  }
+  return groups.empty() ? "-" : fmt::format("{}", fmt::join(groups, " "));
+}
+
+void list_integrators(bool as_json) {
+  auto const& words = vocabulary().integrators;
+  if (as_json) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::array();
+    for (IntegratorWord const& word : words) json.push_back(to_json(word));
+    fmt::print("{}\n", json.dump(1));
+    return;
+  }
+  fmt::print("{:<16} {:<12} {:>5}  {:<8} {:<6} {:<34} {}\n", "name", "family", "order", "steps", "needs", "keeps",
+             "source");
+  for (IntegratorWord const& word : words) {
+    char const* steps = word.fixed && word.adaptive ? "both" : word.fixed ? "fixed" : "adaptive";
+    fmt::print("{:<16} {:<12} {:>5}  {:<8} {:<6} {:<34} {}{}\n", word.name, word.family,
+               word.order ? std::to_string(*word.order) : "-", steps, word.needs,
+               word.preserves.empty() ? "-" : fmt::format("{}", fmt::join(word.preserves, ",")), word.source,
+               word.not_built.empty() ? "" : "  (" + word.not_built + ")");
+  }
+}
+
+void list_problems(bool as_json) {
+  auto const& words = vocabulary().problems;
+  if (as_json) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::array();
+    for (ProblemWord const& word : words) json.push_back(to_json(word));
+    fmt::print("{}\n", json.dump(1));
+    return;
+  }
+  for (ProblemWord const& word : words) {
+    fmt::print("{}: {}\n  variants:     {}\n  formulations: {}\n  source:       {}\n  parameters:\n", word.name,
+               word.summary, variants_text(word), fmt::join(word.formulations, " "), word.source);
+    for (ParameterWord const& p : word.parameters)
+      fmt::print("    {:<14} {:g} {}\n", p.name, fmt::join(p.value, ","), p.unit);
+  }
+}
+
+void list_names(std::vector<std::string> const& names, bool as_json) {
+  if (as_json)
+    fmt::print("{}\n", nlohmann::ordered_json(names).dump(1));
+  else
+    for (std::string const& name : names) fmt::print("{}\n", name);
+}
+
+void list(std::string const& what, bool as_json) {
+  if (what == "integrators") return list_integrators(as_json);
+  if (what == "problems") return list_problems(as_json);
+  if (what == "policies") return list_names(vocabulary().policies, as_json);
+  if (what == "suites") return list_names(suite_names(), as_json);
+  if (what == "formulations") {
+    auto const names = formulation_names();
+    return list_names({names.begin(), names.end()}, as_json);
+  }
+  throw UsageError(unknown("list", what, {"problems", "formulations", "integrators", "policies", "suites"}));
+}
+
+}  // namespace
+
+void add_list(CLI::App& app) {
+  auto const what = std::make_shared<std::string>();
+  auto const as_json = std::make_shared<bool>(false);
+  CLI::App* verb =
+      app.add_subcommand("list", "Say what there is: problems, formulations, integrators, policies, suites");
+  verb->add_option("WHAT", *what, "problems, formulations, integrators, policies or suites")->required();
+  verb->add_flag("--json", *as_json, "As JSON");
+  verb->callback([=] { list(*what, *as_json); });
+}
+
+}  // namespace polhode::bench
