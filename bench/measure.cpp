@@ -66,11 +66,13 @@ Metrics::Metrics(UsableReference const& reference, BodyParameters const& body, b
 
 void Metrics::see(Sight const& sight) {
   bool const first = drift_times_.empty();
+  if (!first)  // trapezoidal rule on the squares
+    drift_squares_ +=
+        (sight.t - drift_times_.back()) * (sight.drift * sight.drift + drifts_.back() * drifts_.back()) / 2;
   drift_times_.push_back(sight.t);
   drifts_.push_back(sight.drift);
   drift_max_ = std::max(drift_max_, std::fabs(sight.drift));
   drift_final_ = sight.drift;
-  drift_squares_ += sight.drift * sight.drift;
   raw_max_ = std::max({raw_max_, sight.raw_defect, std::fabs(sight.drift)});
 
   Invariants const now = invariants_of(inertia_, sight.q, sight.omega);
@@ -109,7 +111,7 @@ void Metrics::fill(results::Record& record) const {
   record.norm_drift_raw_max = raw_max_;
   record.norm_drift_max = drift_max_;
   record.norm_drift_final = drift_final_;
-  record.norm_drift_rms = std::sqrt(drift_squares_ / double(std::max<std::size_t>(1, drifts_.size())));
+  record.norm_drift_rms = std::sqrt(drift_squares_ / t_end_);
   record.norm_growth_exponent = growth_exponent(drift_times_, drifts_);
   if (torque_free_) {
     record.energy_drift_max = energy_max_;
