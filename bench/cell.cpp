@@ -13,9 +13,12 @@ struct Timeout {};
 
 class Deadline {
  public:
-  explicit Deadline(double seconds) : limited_(seconds > 0), end_(Clock::now() + to_ticks(seconds)) {}
+  explicit Deadline(Limits const& limits)
+      : stop_(limits.stop), limited_(limits.timeout > 0), end_(Clock::now() + to_ticks(limits.timeout)) {}
   void check() {
-    if (limited_ && ++calls_ % 256 == 0 && Clock::now() > end_) throw Timeout{};
+    if (++calls_ % 256 != 0) return;
+    if (stop_ && *stop_) throw Interrupted{};
+    if (limited_ && Clock::now() > end_) throw Timeout{};
   }
 
  private:
@@ -23,6 +26,7 @@ class Deadline {
   static Clock::duration to_ticks(double seconds) {
     return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
   }
+  std::atomic<bool> const* stop_;
   bool limited_;
   Clock::time_point end_;
   std::int64_t calls_ = 0;
@@ -43,8 +47,8 @@ class Recorder final : public Watch<M> {
   using Wide = typename A::template Over<Quad>;
 
  public:
-  Recorder(Erased<M> const& problem, std::size_t own_columns, Metrics* metrics, History& history, double timeout)
-      : problem_(problem), own_columns_(own_columns), metrics_(metrics), history_(history), deadline_(timeout) {}
+  Recorder(Erased<M> const& problem, std::size_t own_columns, Metrics* metrics, History& history, Limits const& limits)
+      : problem_(problem), own_columns_(own_columns), metrics_(metrics), history_(history), deadline_(limits) {}
 
   void at_stop(Stop const& stop, Point<M> const& x) override {
     if (stop.time == 0 && metrics_) metrics_->see(sight(0, x, {}));
@@ -108,7 +112,7 @@ MethodOn<M> const& method_named(std::string_view name) {
 }
 
 /// Runs a prepared cell on its erased problem.
-Trajectory run(PreparedCell const& prepared, Metrics* metrics, double timeout) {
+Trajectory run(PreparedCell const& prepared, Metrics* metrics, Limits const& limits) {
   Trajectory trajectory;
   trajectory.columns = columns_of(*prepared.problem);
   for (Column const& column : trajectory.columns) trajectory.history.columns.push_back(column.name);
@@ -117,7 +121,7 @@ Trajectory run(PreparedCell const& prepared, Metrics* metrics, double timeout) {
   ProblemInFormulation const problem = prepared.problem->in(prepared.cell.formulation);
   std::visit(
       [&]<Space M>(std::unique_ptr<Erased<M>> const& field) {
-        Recorder<M> recorder(*field, own, metrics, trajectory.history, timeout);
+        Recorder<M> recorder(*field, own, metrics, trajectory.history, limits);
         try {
           trajectory.outcome = method_named<M>(prepared.cell.integrator).solve(*field, prepared.plan, recorder);
           trajectory.status = status_of(trajectory.outcome.status);
@@ -127,7 +131,7 @@ Trajectory run(PreparedCell const& prepared, Metrics* metrics, double timeout) {
         } catch (Timeout const&) {
           trajectory.status = results::Status::timeout;
           trajectory.reason =
-              fmt::format("stopped after {:g} s of wall time at t = {:.6g} s", timeout, recorder.reached);
+              fmt::format("stopped after {:g} s of wall time at t = {:.6g} s", limits.timeout, recorder.reached);
         } catch (std::exception const& error) {
           trajectory.status = results::Status::crashed;
           trajectory.reason = error.what();
@@ -283,7 +287,7 @@ results::Record refused(PreparedCell const& prepared, std::string const& build) 
   return record;
 }
 
-Measured measure(PreparedCell const& prepared, References& references, std::string const& build, double timeout) {
+Measured measure(PreparedCell const& prepared, References& references, std::string const& build, Limits const& limits) {
   Measured measured;
   results::Record& record = measured.record;
   record.cell = results::cell_id(prepared.cell);
@@ -294,7 +298,7 @@ Measured measure(PreparedCell const& prepared, References& references, std::stri
   record.reference = reference->id;
   record.reference_bar = reference->bar;
   Metrics metrics(*reference, prepared.problem->body(), prepared.problem->torque_free(), prepared.cell.t_end);
-  Trajectory trajectory = run(prepared, &metrics, timeout);
+  Trajectory trajectory = run(prepared, &metrics, limits);
 
   record.status = trajectory.status;
   record.reason = trajectory.reason;
@@ -325,8 +329,8 @@ Measured measure(PreparedCell const& prepared, References& references, std::stri
   return measured;
 }
 
-Trajectory simulate(PreparedCell const& prepared, double timeout) {
-  return run(prepared, nullptr, timeout);
+Trajectory simulate(PreparedCell const& prepared, Limits const& limits) {
+  return run(prepared, nullptr, limits);
 }
 
 }  // namespace polhode::bench

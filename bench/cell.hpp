@@ -1,5 +1,6 @@
 #pragma once
 /// One cell, from words to a record: the user's words become a problem, a plan and a schedule; the run is measured.
+#include <atomic>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -51,9 +52,17 @@ struct Measured {
   History history;  ///< at samples and output times
 };
 
+/// Thrown by a run that was asked to stop: there is nothing to record.
+struct Interrupted {};
+
+/// When a run ends before its time.
+struct Limits {
+  double timeout = 0;                       ///< wall time [s]; 0 for none
+  std::atomic<bool> const* stop = nullptr;  ///< set from outside: throw Interrupted soon
+};
+
 /// Runs and measures one cell. Failures of the run are statuses, never exceptions; `build` goes into the record.
-/// timeout [s] of wall time; 0 for none.
-Measured measure(PreparedCell const& prepared, References& references, std::string const& build, double timeout);
+Measured measure(PreparedCell const& prepared, References& references, std::string const& build, Limits const& limits);
 
 /// The record of a cell that does not run.
 results::Record refused(PreparedCell const& prepared, std::string const& build);
@@ -66,7 +75,7 @@ struct Trajectory {
   std::string reason;
   Outcome outcome;
 };
-Trajectory simulate(PreparedCell const& prepared, double timeout);
+Trajectory simulate(PreparedCell const& prepared, Limits const& limits = {});
 
 /// Columns of a history with their units: q1 .. q4, wx wy wz, and the problem's own.
 std::vector<Column> columns_of(ChosenProblem const& problem);

@@ -145,7 +145,7 @@ int run_simulation(CellFlags const& flags, double every, std::string const& out)
   if (!prepared.refusal.empty())
     throw UsageError(
         fmt::format("{} on {}: {}", prepared.cell.integrator, prepared.cell.formulation, prepared.refusal));
-  Trajectory trajectory = simulate(prepared, 0);
+  Trajectory trajectory = simulate(prepared);
   keep_outputs(trajectory, prepared.plan.stops);
   write_text(out, csv_of(prepared, trajectory));
   if (trajectory.status == results::Status::ok) return 0;
@@ -294,6 +294,8 @@ void add_reference(CLI::App& app) {
   verb->callback([=] {
     std::filesystem::path const folder = out->empty() ? references_folder() : std::filesystem::path(*out);
     if (!flags->cell.problem.empty()) return make_reference(flags->chosen(), folder);
+    if (!flags->cell.variant.empty() || !flags->settings.empty() || flags->has_t_end->count() > 0)
+      throw UsageError("--variant, --set and --t-end need a PROBLEM");
     for (results::Cell const& cell : physics_of_suites()) make_reference(cell, folder);
   });
 }

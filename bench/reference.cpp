@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "problems/exact.hpp"
@@ -43,6 +44,7 @@ Reference Reference::solve(ChosenProblem const& problem, Schedule const& schedul
     Vec3<Quad> const omega{state[4], state[5], state[6]};
     reference.largest_rate_ = std::max(reference.largest_rate_, double(length(omega)));
   };
+  note_rate();
   for (std::size_t k = 0; k + 1 < stops.size(); ++k) {
     Quad t = stops[k].time;
     Quad const next = stops[k + 1].time;
@@ -124,17 +126,51 @@ std::optional<ExactFreeBody<Quad>> closed_form_of(ChosenProblem const& problem) 
 
 }  // namespace
 
+namespace {
+
+constexpr double good_enough = 1e-28;  // [rad]; a reference may be worse, but then no finer step helps
+constexpr int most_halvings = 7;
+
+/// Empty if the method diverges: its fixed point needs h times the Lipschitz constant below 1.
+std::vector<QuadState> try_gauss(ChosenProblem const& problem, Schedule const& schedule, int divisions) {
+  try {
+    return solve_by_gauss(problem, schedule, divisions);
+  } catch (ReferenceError const&) {
+    return {};
+  }
+}
+
+/// The greatest distance of two solutions [rad]; infinite if one of them is missing.
+double largest_angle(std::vector<QuadState> const& a, std::vector<QuadState> const& b) {
+  if (a.empty() || b.empty()) return std::numeric_limits<double>::infinity();
+  double largest = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) largest = std::max(largest, angle_between(a[k], b[k]));
+  return largest;
+}
+
+}  // namespace
+
 Certificate certify(results::Cell const& cell, ChosenProblem const& problem, Schedule const& schedule,
                     Reference const& reference) {
   Certificate certificate{.id = reference_id(cell), .subject = reference_subject(cell)};
   Schedule watched = schedule;
   if (!(watched.sample_period > 0)) watched.output_period = schedule.t_end / 100;
   std::vector<Stop> const stops = stops_of(watched);
-  // A turn of 0.15 rad a step brings order 16 to 33 digits; faster bodies take smaller steps.
+  // A turn of 0.15 rad a step brings order 16 to 33 digits; stiff loops need smaller steps still.
   double const h = std::min(0.5, 0.15 / std::max(reference.largest_rate(), 1e-3));
-  int const divisions = int(std::ceil((stops[1].time - stops[0].time) / h - 1e-9));
-  std::vector<QuadState> const coarse = solve_by_gauss(problem, watched, divisions);
-  std::vector<QuadState> const fine = solve_by_gauss(problem, watched, 2 * divisions);
+  int divisions = int(std::ceil((stops[1].time - stops[0].time) / h - 1e-9));
+  std::vector<QuadState> coarse = try_gauss(problem, watched, divisions),
+                         fine = try_gauss(problem, watched, 2 * divisions);
+  for (int halvings = 0; halvings < most_halvings && !(largest_angle(coarse, fine) < good_enough); ++halvings) {
+    divisions *= 2;
+    coarse = std::move(fine);
+    fine = try_gauss(problem, watched, 2 * divisions);
+  }
+  if (fine.empty() || coarse.empty())
+    throw ReferenceError(
+        fmt::format("{}: Gauss in quadruple precision diverges at every step size tried; the problem is "
+                    "too stiff for a certified reference",
+                    problem.info().name));
   std::size_t const every = std::max<std::size_t>(1, (stops.size() - 1) / 50);
   for (std::size_t k = 0; k < stops.size(); ++k) {
     QuadState const here = reference.at(stops[k].time);

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <chrono>
 #include <csignal>
 #include <fstream>
 #include <map>
@@ -21,6 +22,12 @@ namespace polhode::bench {
 namespace {
 
 std::atomic<bool> interrupted = false;
+
+/// Since 1970: files of records sort by it, as text, too.
+std::int64_t nanoseconds_now() {
+  auto const now = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
+}
 
 struct Task {
   PreparedCell prepared;
@@ -148,7 +155,9 @@ class Group {
           }
           task.measured.record = task.prepared.refusal.empty() ? results::Record{} : refused(task.prepared, build_id());
           if (task.prepared.refusal.empty())
-            task.measured = measure(task.prepared, references_, build_id(), options.timeout);
+            task.measured = measure(task.prepared, references_, build_id(), {options.timeout, &interrupted});
+        } catch (Interrupted const&) {
+          return;
         } catch (...) {
           std::lock_guard const lock(mutex);
           trouble = std::current_exception();
@@ -179,7 +188,7 @@ class Group {
       timed.push_back(task);
     }
     double const part = 1.0 / timing.repetitions;
-    std::vector<TimedResult> const results = time_cells(cells, timing, [&] { progress_.advance(part); });
+    std::vector<TimedResult> const results = time_cells(cells, timing, interrupted, [&] { progress_.advance(part); });
     for (std::size_t i = 0; i < timed.size(); ++i) {
       results::Record& record = timed[i]->measured.record;
       record.cpu_time_s = results[i].cpu_time;
@@ -217,7 +226,7 @@ void say_what_would_run(std::vector<Task> const& tasks, Timing const& timing, Ru
                task.prepared.refusal.empty() ? "" : "  refused: " + task.prepared.refusal);
   }
   int const seconds = int(std::lround(expected_time(tasks, timing, processors_of(options))));
-  fmt::print("{} cells, about {}:{:02} min\n", tasks.size(), seconds / 60, seconds % 60);
+  fmt::print("{} cells, about {} min {} s\n", tasks.size(), seconds / 60, seconds % 60);
 }
 
 }  // namespace
@@ -270,7 +279,7 @@ RunSummary run_suite(Suite const& suite, RunOptions const& options) {
   meta["suite"] = suite.name;
   meta["suite_hash"] = results::hash_of(suite.text);
   meta["reference_methods"] = "Taylor series and 8-stage Gauss, float128";
-  results::Writer writer(summary.out / fmt::format("run-{}-{}.jsonl", std::time(nullptr), getpid()), meta);
+  results::Writer writer(summary.out / fmt::format("run-{:020}-{}.jsonl", nanoseconds_now(), getpid()), meta);
 
   std::vector<std::string> order;
   std::map<std::string, std::vector<Task*>> groups;

@@ -60,11 +60,11 @@ results::CpuTime bootstrap(std::vector<double> values) {
 }
 
 std::vector<TimedResult> time_cells(std::vector<TimedCell> const& cells, Timing const& timing,
-                                    std::function<void()> const& progress) {
+                                    std::atomic<bool> const& stop, std::function<void()> const& progress) {
   std::vector<TimedResult> results(cells.size());
   benchmark::ClearRegisteredBenchmarks();
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (!cells[i].solve) continue;
+    if (!cells[i].solve || stop) continue;
     TimedSolve& solve = *cells[i].solve;
     // Warm: a cold first solve would calibrate too few iterations and inflate solves of a microsecond 2-3 times.
     for (int warm = 0; warm < 3; ++warm) solve.solve();
@@ -72,7 +72,8 @@ std::vector<TimedResult> time_cells(std::vector<TimedCell> const& cells, Timing 
     solve.solve();
     results[i].allocations = allocations_of_this_thread() - before;
     benchmark::RegisterBenchmark(cells[i].cell.c_str(),
-                                 [&solve, &progress](benchmark::State& state) {
+                                 [&solve, &progress, &stop](benchmark::State& state) {
+                                   if (stop) state.SkipWithError("interrupted");
                                    for (auto _ : state) benchmark::DoNotOptimize(solve.solve());
                                    progress();
                                  })

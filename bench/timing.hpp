@@ -1,6 +1,7 @@
 #pragma once
 /// The timing pass: Google Benchmark as the timer. The solves of one problem are timed together, their repetitions in
 /// random order, so that a drift of the machine's speed meets all of them alike: what counts are ratios within a group.
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -27,9 +28,10 @@ struct TimedResult {
 /// Hands flags (--benchmark_...) to Google Benchmark. Throws UsageError for one that it does not know.
 void initialise_timer(std::vector<std::string> const& flags);
 
-/// Times the cells, one at a time on this thread. progress() is called after each repetition of each cell.
+/// Times the cells, one at a time on this thread. progress() is called after each repetition of each cell; once `stop`
+/// is set, what is left is skipped.
 std::vector<TimedResult> time_cells(std::vector<TimedCell> const& cells, Timing const& timing,
-                                    std::function<void()> const& progress);
+                                    std::atomic<bool> const& stop, std::function<void()> const& progress);
 
 /// Median and 95% percentile-bootstrap interval of the median [same unit as the values]. Deterministic.
 results::CpuTime bootstrap(std::vector<double> values);

@@ -79,6 +79,8 @@ struct GaussMu {
 /// s = 1 alone, because the chart is centred at the beginning of the step.
 /// One sweep evaluates each stage once, from the newest values of the others. Iteration ends when no component of the
 /// stages sets a new minimum of its change, twice running: there is nothing more to gain in this arithmetic.
+/// fails  Status::nonlinear_fail if it comes to rest elsewhere: h times the Lipschitz constant of the field is too
+/// large
 template <int s>
 struct Gauss {
   template <class R>
@@ -90,6 +92,7 @@ struct Gauss {
     struct Memory {
       Chart<M> carry = zero<Chart<M>>();
       std::int64_t iterations = 0;
+      bool unconverged = false;  ///< a step's iteration came to rest far from a solution
       void restart() { carry = zero<Chart<M>>(); }
     };
     template <Space M>
@@ -114,8 +117,9 @@ struct Gauss {
       });
 
       Stagnation<Chart<M>> stagnation;
+      Chart<M> change;
       for (int sweep = 0; sweep < most_sweeps; ++sweep) {
-        Chart<M> change = zero<Chart<M>>();
+        change = zero<Chart<M>>();
         unroll<s>([&](auto i) POLHODE_LAMBDA {
           Chart<M> u = memory.carry;
           unroll<s>([&](auto j) POLHODE_LAMBDA { add(u, table.mu[i][j], L[j]); });
@@ -130,6 +134,10 @@ struct Gauss {
         ++memory.iterations;
         if (stagnation.reached(change)) break;
       }
+      // At rest through round-off the last change is tiny; at rest because the iteration diverges it is not.
+      S const residual = distance<S>(change, zero<Chart<M>>()), size = distance<S>(Y[0], zero<Chart<M>>());
+      if (!(residual < S(1e-9) * size + S(1e-12))) [[unlikely]]
+        memory.unconverged = true;
 
       Chart<M> sum = L[0], rest = memory.carry;
       unroll<s - 1>([&](auto j) POLHODE_LAMBDA {

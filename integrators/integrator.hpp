@@ -120,7 +120,10 @@ class Fixed {
     bool const divides = double(rest / h_) < 1e-9;
     run(x, t, divides ? equal_step(t_end - t, whole) : h_, whole);
     if (!divides) run(x, t + R(double(whole)) * h_, rest, 1);
-    return all_finite(x) ? Status::ok : Status::diverged;
+    if (!all_finite(x)) return Status::diverged;
+    if constexpr (requires { memory_.unconverged; })
+      if (memory_.unconverged) return Status::nonlinear_fail;
+    return Status::ok;
   }
   void restart() { memory_.restart(); }
   Work work() const {

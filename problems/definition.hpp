@@ -66,6 +66,7 @@ concept Definition = std::constructible_from<D, Choice const&> && requires(D d, 
   { c.sample_period } -> std::convertible_to<double>;
   { c.torque_free() } -> std::same_as<bool>;
   { c.principal() } -> std::same_as<bool>;
+  c.body();
   { c.columns() } -> std::same_as<std::vector<Column>>;
   { c.claims(history) } -> std::same_as<std::vector<ClaimResult>>;
   { c.template field<double, FlatQuaternion, true>() } -> Problem;

@@ -95,12 +95,21 @@ TEST(CliRun, FilterRunsPartAndTheRestLater) {
   EXPECT_EQ(deterministic(folder.path / "r").size(), 4U);
 }
 
+TEST(CliRun, ShardsAreDisjointAndTogetherTheWhole) {
+  Folder folder;
+  folder.write("tiny.toml", timed);
+  EXPECT_EQ(run_of(folder, "tiny.toml --out a --shard 1/2"), "a: 2 cells: 2 ok, 0 refused, 0 failed, 0 already done\n");
+  EXPECT_EQ(run_of(folder, "tiny.toml --out a --shard 2/2"), "a: 2 cells: 1 ok, 1 refused, 0 failed, 0 already done\n");
+  EXPECT_EQ(run_of(folder, "tiny.toml --out a"), "a: 4 cells: 0 ok, 0 refused, 0 failed, 4 already done\n");
+}
+
 TEST(CliRun, DryRunWritesNothing) {
   Folder folder;
   folder.write("tiny.toml", timed);
   auto const before = folder.contents();
   std::string const out = run_of(folder, "tiny.toml --dry-run");
-  EXPECT_EQ(std::count(out.begin(), out.end(), '\n'), 4) << out;
+  EXPECT_EQ(std::count(out.begin(), out.end(), '\n'), 5) << out;
+  EXPECT_NE(out.find("\n4 cells, about "), std::string::npos) << out;
   EXPECT_NE(out.find(" free_body//quaternion/gauss2/none h=0.1\n"), std::string::npos) << out;
   EXPECT_NE(out.find(" free_body//s3/rk4/none h=0.1  refused: needs flat coordinates\n"), std::string::npos) << out;
   EXPECT_EQ(folder.contents(), before);

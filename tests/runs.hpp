@@ -31,11 +31,11 @@ struct CellUnderTest {
   }
 
   /// Its history at samples, outputs (`every` seconds) and the end, and how it ended.
-  bench::Trajectory simulated(double every = 0) const { return bench::simulate(bench::prepare(cell, every), 0); }
+  bench::Trajectory simulated(double every = 0) const { return bench::simulate(bench::prepare(cell, every)); }
   /// Everything that the harness measures; references are made once per test program.
   bench::Measured measured() const {
     static bench::References references{"no committed references: every one is certified here"};
-    return bench::measure(bench::prepare(cell), references, "test", 0);
+    return bench::measure(bench::prepare(cell), references, "test", {});
   }
 
  private:

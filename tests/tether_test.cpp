@@ -201,7 +201,7 @@ class PublishedClaims : public testing::TestWithParam<Claims> {
   static Results run(std::string const& which) {
     auto const cell = a_cell("tether_capture", "quaternion", "gauss4").with_h(0.1);
     auto const prepared = bench::prepare(cell.of_variant(which + "," + GetParam().words).cell);
-    auto const run = bench::simulate(prepared, 0);
+    auto const run = bench::simulate(prepared);
     EXPECT_EQ(run.status, results::Status::ok) << run.reason;
     Results results;
     for (ClaimResult const& claim : prepared.problem->claims(run.history)) results[claim.name] = claim;
