@@ -1,5 +1,5 @@
 #pragma once
-/// Smooth rest-to-rest slew under proportional-derivative control: the commonest loop in practice, and an order
+/// Smooth slew from a tumble to rest under proportional-derivative control: the commonest loop in practice, and an order
 /// problem. state   attitude x omega [rad/s, body] params  inertia [kg m^2], q0, omega0 [rad/s], k_p [N m], k_d [N m s]
 #include "problems/controllers/pd.hpp"
 #include "problems/definition.hpp"
