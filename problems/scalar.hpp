@@ -23,17 +23,20 @@ __extension__ typedef __float128 Quad;
 /// Real: the type of coefficients, parameters and steps.
 /// short_series: 53 bits suffice, so the series of the exponential map may stop there.
 /// flattened: arithmetic is so cheap that a whole step is worth one function.
+/// head_shift: added to and subtracted from a number of size 1, it leaves a head of half the digits.
 template <class S>
 struct ScalarTraits {
   using Real = S;
   static constexpr bool short_series = false;
   static constexpr bool flattened = false;
+  static constexpr double head_shift = 0x1.8p56;
 };
 template <>
 struct ScalarTraits<double> {
   using Real = double;
   static constexpr bool short_series = true;
   static constexpr bool flattened = true;
+  static constexpr double head_shift = 0x1.8p26;
 };
 
 template <class S>

@@ -102,10 +102,21 @@ template <class S>
 struct UnitQuaternion {
   static constexpr bool constrained = true;
   static POLHODE_INLINE S defect(Quat<S> const& q) { return abs_of(S(dot(q, q) - S(1.0))); }
+  /// The nearest unit quaternion: the tether paper's explicit projection, eq. (16), which is renormalisation. Dividing
+  /// by a rounded norm would leave |q.q - 1| at up to 6e-16 in double; correcting by the excess, formed without
+  /// rounding error, leaves 2.3e-16. Returns the distance moved.
   static POLHODE_INLINE S project(Quat<S>& q) {
-    S const norm = sqrt(dot(q, q));
-    q = {q.x / norm, q.y / norm, q.z / norm, q.w / norm};
-    return abs_of(S(norm - S(1.0)));
+    S d = norm_excess(q), moved(0.0);
+    if (S(0.25) < abs_of(d)) [[unlikely]] {  // too far for the correction to be small
+      S const norm = sqrt(dot(q, q));
+      moved = norm - S(1.0);
+      q = {q.x / norm, q.y / norm, q.z / norm, q.w / norm};
+      d = norm_excess(q);
+    }
+    S const norm = sqrt(S(1.0) + d), s = d / (S(1.0) + norm);  // s = norm - 1, without cancellation
+    S const shrink = s / norm;
+    q = {q.x - shrink * q.x, q.y - shrink * q.y, q.z - shrink * q.z, q.w - shrink * q.w};
+    return abs_of(S(moved + s));
   }
   static POLHODE_INLINE Quat<S> attitude(Quat<S> const& q) { return q; }
   static POLHODE_INLINE Quat<S> from_attitude(Quat<S> const& q) { return q; }
