@@ -18,9 +18,10 @@ struct ParameterError : std::invalid_argument {
 };
 
 /// What a parameter's values must satisfy.
-enum class Rule { finite, positive, non_negative, inertia, unit_quaternion };
+enum class Rule { finite, positive, non_negative, inertia, unit_quaternion, graph };
 
-/// One parameter, tied to the numbers that it sets. An inertia may change between 3 and 6 numbers.
+/// One parameter, tied to the numbers that it sets. An inertia may change between 3 and 6 numbers, a graph has three
+/// for every link (graph.hpp).
 class Parameter {
  public:
   Parameter(std::string name, std::string unit, Rule rule, std::vector<double>& values)
@@ -65,7 +66,10 @@ inline void assign(std::vector<Parameter> parameters, std::map<std::string, std:
 inline void Parameter::assign(std::vector<double> const& values) {
   std::size_t const wanted = single_ ? 1 : vector_->size();
   bool const other_inertia = rule_ == Rule::inertia && (values.size() == 3 || values.size() == 6);
-  if (values.size() != wanted && !other_inertia)
+  bool const links = rule_ == Rule::graph && !values.empty() && values.size() % 3 == 0;
+  if (rule_ == Rule::graph && !links)
+    refuse("takes 3 numbers a link (node, node that it hears, weight), not " + std::to_string(values.size()));
+  if (values.size() != wanted && !other_inertia && !links)
     refuse("takes " + std::string(rule_ == Rule::inertia ? "3 or 6" : std::to_string(wanted)) + " number(s), not " +
            std::to_string(values.size()));
   check(values);
