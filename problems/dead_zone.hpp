@@ -46,7 +46,8 @@ struct DeadZoneBody {
 
   Velocity<Space> operator()(S const& t, State const& x) const {
     Vec3<S> const v = signals(t, x).v;
-    Vec3<S> const torque = actuators.torque(v, holds_sides ? sides : actuators.sides_of(v)) + dead_zone_disturbance(t);
+    Vec3<S> const torque =
+        actuators.torque(v, holds_sides ? sides : DeadZoneActuator<S>::sides_of(v)) + dead_zone_disturbance(t);
     return {x.second, inertia.acceleration(x.second, share * torque)};
   }
   State initial() const { return start; }

@@ -183,7 +183,7 @@ TEST(DeadZoneLaw, MakesTheSlidingVariableDecay) {
 
 Real3 torque_of(DeadZoneKind kind, Real3 const& v) {
   DeadZoneActuator<double> const actuators(kind);
-  return actuators.torque(v, actuators.sides_of(v));
+  return actuators.torque(v, DeadZoneActuator<double>::sides_of(v));
 }
 
 TEST(DeadZoneActuators, AsPrinted) {
@@ -217,7 +217,7 @@ TEST(DeadZoneActuators, SmoothIsADiagonalMatrix) {
 
 TEST(DeadZoneActuators, HeldSidesDecideInsteadOfTheCommand) {
   DeadZoneActuator<double> const actuators(DeadZoneKind::continuous);
-  DeadZoneSides const sides = actuators.sides_of({1, -1, 0});
+  DeadZoneSides const sides = DeadZoneActuator<double>::sides_of({1, -1, 0});
   Real3 const late{0.45, -0.35, 0.45};  // each a little past a breakpoint
   expect_near(
       actuators.torque(late, sides),
