@@ -12,6 +12,7 @@
 #include "problems/definition.hpp"
 #include "problems/formulations.hpp"
 #include "problems/graph.hpp"
+#include "problems/history.hpp"
 #include "problems/mrp.hpp"
 
 namespace polhode {
@@ -234,39 +235,12 @@ class QuaternionSync {
   std::vector<double> null_vector_;
 };
 
-namespace sync_claims {
-
-/// The greatest rise of y above an earlier value.
-inline double rise(std::vector<double> const& y) {
-  double low = y.front(), most = 0;
-  for (double value : y) {
-    most = std::max(most, value - low);
-    low = std::min(low, value);
-  }
-  return most;
-}
-/// The greatest fall below an earlier value.
-inline double fall(std::vector<double> y) {
-  for (double& value : y) value = -value;
-  return rise(y);
-}
-/// The time from which y stays below `bound`, by linear interpolation; nothing if it ends above.
-inline std::optional<double> below_from(std::vector<double> const& t, std::vector<double> const& y, double bound) {
-  std::size_t i = y.size();
-  while (i > 0 && y[i - 1] < bound) --i;
-  if (i == y.size()) return {};
-  if (i == 0) return t.front();
-  return t[i - 1] + (t[i] - t[i - 1]) * (y[i - 1] - bound) / (y[i - 1] - y[i]);
-}
-
-}  // namespace sync_claims
-
-inline std::vector<ClaimResult> QuaternionSync::claims(History const& history) const {
+inline std::vector<ClaimResult> QuaternionSync::claims(History const& run) const {
   std::vector<ClaimResult> results;
-  if (history.times.empty()) return results;
+  if (run.times.empty()) return results;
   constexpr double rounding = 1e-9;
-  std::vector<double> const apart = history.column("disagreement"), least = history.column("scalar_min");
-  bool const to_the_end = history.times.back() >= horizon * (1 - 1e-9);
+  std::vector<double> const apart = run.column("disagreement"), least = run.column("scalar_min");
+  bool const to_the_end = run.times.back() >= horizon * (1 - 1e-9);
   // Our own numbers (tests/sync_test.cpp) hold for the paper's data, normalised.
   bool const known = printed_ && !recomputed_ && !raw_ && !trap_ && to_the_end;
   auto const against = [&](double value, double of_7, double of_13, double tolerance) -> std::optional<bool> {
@@ -275,12 +249,12 @@ inline std::vector<ClaimResult> QuaternionSync::claims(History const& history) c
   };
 
   if (least.front() >= 0) {
-    double const fall = sync_claims::fall(least);
+    double const fall = history::fall(least);
     results.push_back({"lemma_1", fall, {}, fall <= rounding});
   }
   if (!null_vector_.empty()) {
-    std::vector<double> const V = history.column("lyapunov");
-    double const rise = sync_claims::rise(V);
+    std::vector<double> const V = run.column("lyapunov");
+    double const rise = history::rise(V);
     results.push_back({"lyapunov_rise", rise, {}, rise <= rounding});
     results.push_back({"lyapunov_start", V.front(), {}, against(V.front(), 1.278598, 1.972655, 1e-6)});
     if (to_the_end) results.push_back({"lyapunov_end", V.back(), {}, against(V.back(), .267340, .272543, 1e-5)});
@@ -291,10 +265,10 @@ inline std::vector<ClaimResult> QuaternionSync::claims(History const& history) c
     results.push_back({"trap", most, {}, most <= rounding});
     return results;
   }
-  std::optional<double> const together = sync_claims::below_from(history.times, apart, 1e-2);
+  std::optional<double> const together = history::below_from(run.times, apart, 1e-2);
   results.push_back({"together", together, {}, together ? against(*together, 11.58, 12.43, 0.02) : false});
   if (to_the_end) {
-    double const spread = history.column("scalar_spread").back();
+    double const spread = run.column("scalar_spread").back();
     results.push_back({"disagreement_end", apart.back(), {}, against(apart.back(), 2.609e-4, 3.810e-4, 2e-6)});
     results.push_back({"scalar_consensus", spread, 0.0, spread <= 1e-3});
   }

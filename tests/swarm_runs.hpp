@@ -35,11 +35,20 @@ SwarmRun<P> run_swarm(P problem, Method const& method, double h, double t_end, P
       if (crossed(k)) return true;
     return false;
   };
-  if (!g.empty()) {
-    problem.take_sides(0, run.x);
-    look(0, run.x);
+  auto const take_sides = [&](double t) {
+    if (g.empty()) return;
+    problem.take_sides(t, run.x);
+    look(t, run.x);
     for (std::size_t k = 0; k < g.size(); ++k) side[k] = g[k] < 0;
-  }
+  };
+  auto const settle = [&]([[maybe_unused]] double t) {
+    if constexpr (Settling<typename P::Space>)
+      if (P::Space::settle(run.x)) {
+        stepper.restart();
+        take_sides(t);
+      }
+  };
+  take_sides(0);
   double t = 0;
   watch(t, run.x);
   for (int i = 1; i <= std::lround(t_end / h); ++i) {
@@ -56,6 +65,7 @@ SwarmRun<P> run_swarm(P problem, Method const& method, double h, double t_end, P
       if (run.status != Status::ok) return run;
       if (!any()) {
         t = next;
+        settle(t);
         break;
       }
       double low = t, high = next;
@@ -73,6 +83,7 @@ SwarmRun<P> run_swarm(P problem, Method const& method, double h, double t_end, P
           run.events.push_back(high);
         }
       t = high;
+      settle(t);
     }
     watch(t, run.x);
   }
