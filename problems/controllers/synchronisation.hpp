@@ -18,7 +18,8 @@ POLHODE_INLINE Vec3<S> protocol7(Real<S> const& a, Quat<S> const& own, Quat<S> c
 /// quaternions, not of attitudes.
 template <class S>
 POLHODE_INLINE Vec3<S> protocol13(Real<S> const& a, Quat<S> const& own, Quat<S> const& heard, bool same_side) {
-  return a * ((same_side ? vec(heard) : S(-1.0) * vec(heard)) - vec(own));
+  Real<S> const product(double(2 * int(same_side) - 1));  // no branch: in a swarm nobody can predict it
+  return a * (product * vec(heard) - vec(own));
 }
 
 }  // namespace polhode
