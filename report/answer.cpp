@@ -236,7 +236,7 @@ Table norm_table(Facts const& facts) {
 }  // namespace
 
 void add_answer(Document& document, Facts const& facts) {
-  document.heading(2, "1. The answer");
+  document.section("The answer");
   document.say("Which integrator keeps the norm, how accurate is it, what does it cost?");
   auto const methods = keeping_of(facts, true);
   document.say(norm_sentence(facts, methods));

@@ -44,7 +44,7 @@ std::string timing_note(Facts const& facts) {
 }
 
 void add_failures(Document& document, Facts const& facts) {
-  document.heading(2, "10. Failures and refusals");
+  document.section("Failures and refusals");
   // status, reason, problem, method -> step sizes and tolerances
   std::map<std::tuple<std::string, std::string, std::string, std::string>, std::vector<std::string>> groups;
   std::size_t n = 0;
@@ -83,7 +83,7 @@ void add_failures(Document& document, Facts const& facts) {
 }
 
 void add_references(Document& document, Facts const& facts) {
-  document.heading(2, "11. References and provenance");
+  document.section("References and provenance");
   std::map<std::pair<std::string, std::optional<double>>, std::pair<std::set<std::string>, std::size_t>> uses;
   std::size_t without = 0;
   for (Instance const& instance : facts.instances) {

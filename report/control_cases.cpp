@@ -6,56 +6,18 @@
 #include <map>
 #include <set>
 
+#include "report/cases.hpp"
 #include "report/sections.hpp"
 #include "report/text.hpp"
 
 namespace polhode::report {
 namespace {
 
-using results::Cell;
 using results::Record;
 using results::Series;
 
-/// More samples than this per curve only make the file larger.
-constexpr std::size_t most_samples = 1200;
 /// Length of the arm from the centre of mass to the capture point, d = (-2, 0, 0) m in body axes.
 constexpr double arm = 2;
-
-/// "tether_capture case1,g1, 50 s" without its case.
-std::string label_without(std::string label, std::string_view word) {
-  auto const at = label.find(word);
-  if (at == std::string::npos) return label;
-  std::size_t length = word.size();
-  if (label.substr(at + length).starts_with(',')) ++length;
-  return label.erase(at, length);
-}
-
-/// What stands before the parameters and the horizon: "tether_capture g1".
-std::string_view without_parameters(std::string_view label) {
-  return label.substr(0, label.find(", "));
-}
-
-bool is_better(Facts const& facts, Record const& a, Record const& b) {
-  auto const merit = [&](Record const& run) {
-    double const error = finite(run.attitude_error_max).value_or(INFINITY);
-    return std::tuple(facts.series_of(run, "history") == nullptr, run.claims.empty(), error);
-  };
-  return merit(a) < merit(b);
-}
-
-/// One curve: `y` of a row against `x` of a row. Rows with a missing number are left out.
-template <class X, class Y>
-Curve curve_of(std::string label, Style const& style, Series const& series, X x, Y y) {
-  Curve curve{std::move(label), style, {}};
-  std::size_t const stride = series.rows.size() / most_samples + 1;
-  for (std::size_t i = 0; i < series.rows.size(); i += stride) {
-    auto const& row = series.rows[i];
-    if (row.size() != series.columns.size()) continue;
-    Point const p{x(row), y(row)};
-    if (std::isfinite(p.x) && std::isfinite(p.y)) curve.points.push_back(p);
-  }
-  return curve;
-}
 
 using Row = std::vector<double>;
 
@@ -64,10 +26,10 @@ class Histories {
  public:
   Histories(Facts const& facts, CaseRuns const& cases, std::size_t n) : n_(n) {
     int index = 0;
-    for (auto const name : control_cases) {
-      auto const found = cases.of.find(std::string(name));
-      Series const* series = found == cases.of.end() ? nullptr : facts.series_of(*found->second, "history");
-      if (series) shown_.push_back({fmt::format("case {}", name.back()), index, series, found->second});
+    for (auto const name : tether_capture().cases) {
+      Record const* run = cases.find(name);
+      Series const* series = run ? facts.series_of(*run, "history") : nullptr;
+      if (series) shown_.push_back({fmt::format("case {}", name.back()), index, series, run});
       ++index;
     }
   }
@@ -175,46 +137,13 @@ class Histories {
 
 }  // namespace
 
-std::vector<CaseRuns> case_runs(Facts const& facts) {
-  std::map<std::string, CaseRuns> groups;
-  for (Instance const& instance : facts.instances) {
-    Cell const& c = instance.like();
-    // tied to the step, the sample period is not the problem's
-    if (c.problem != "tether_capture" || has_word(c.variant, "coupled")) continue;
-    for (auto const name : control_cases) {
-      if (!has_word(instance.like().variant, name)) continue;
-      std::string const label = label_without(instance.label, name);
-      CaseRuns& group = groups.try_emplace(label, CaseRuns{label, "", {}}).first->second;
-      group.title = without_word(c.variant, name);
-      std::ranges::replace(group.title, ',', ' ');
-      for (Record const* run : instance.runs) {
-        if (!is_ok(*run)) continue;
-        auto const [at, is_new] = group.of.try_emplace(std::string(name), run);
-        if (!is_new && is_better(facts, *run, *at->second)) at->second = run;
-      }
-    }
-  }
-  std::vector<CaseRuns> list;
-  for (auto& [label, group] : groups) {
-    if (!group.of.empty()) list.push_back(std::move(group));
-  }
-  // a short name that is not unique says too little
-  for (CaseRuns& a : list) {
-    auto const same = [&](CaseRuns const& b) { return without_parameters(a.label) == without_parameters(b.label); };
-    if (a.title.empty() || std::ranges::count_if(list, same) > 1) a.title = a.label;
-  }
-  // the nominal sign first
-  std::ranges::stable_sort(list, {}, [](CaseRuns const& c) { return c.label.find("as_printed") != std::string::npos; });
-  return list;
-}
-
 void add_control_cases(Document& document, Facts const& facts) {
-  document.heading(2, "5. The three control strategies");
+  add_paper_head(document, facts, tether_capture());
   document.say(
       "The paper's figures 4 to 7: tether and thruster together (case 1), thruster below 5 deg and tether above "
       "(case 2), thruster alone (case 3). Each curve is the most accurate run that left a history.");
   std::size_t n = 0;
-  for (CaseRuns const& cases : case_runs(facts)) {
+  for (CaseRuns const& cases : case_runs(facts, tether_capture())) {
     Histories const histories(facts, cases, n + 1);
     if (histories.empty()) continue;
     ++n;

@@ -110,7 +110,10 @@ using Block = std::variant<Heading, Paragraph, Table, Figure>;
 struct Document {
   std::string title;
   std::vector<Block> blocks;
+  int sections = 0;  ///< so far
 
+  /// A heading of level 2 with its number.
+  void section(std::string const& text) { heading(2, std::to_string(++sections) + ". " + text); }
   void heading(int level, std::string text) { blocks.emplace_back(Heading{level, std::move(text)}); }
   void say(Text text) { blocks.emplace_back(Paragraph{std::move(text)}); }
   void add(Table table) { blocks.emplace_back(std::move(table)); }

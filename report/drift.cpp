@@ -149,7 +149,7 @@ Figure drift_figure(Facts const& facts, Instance const& instance, std::size_t n)
 }  // namespace
 
 void add_drift(Document& document, Facts const& facts) {
-  document.heading(2, "2. Norm drift, with and without projection");
+  document.section("Norm drift, with and without projection");
   document.say(
       "Figure 3 of Xu et al. (2017, doi 10.21656/1000-0887.380168) shows a norm violation of the two-stage Gauss "
       "method "

@@ -38,7 +38,7 @@ std::vector<Signs> pairs_of(Facts const& facts) {
 }  // namespace
 
 void add_erratum(Document& document, Facts const& facts) {
-  document.heading(2, "7. The sign erratum");
+  document.section("The sign erratum");
   document.say(
       "The paper prints the gyroscopic term as J omega' = + omega x J omega; Euler's equation has a minus (variant "
       "as_printed has the plus). The energy and |L| are constant under either sign.");

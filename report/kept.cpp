@@ -67,7 +67,7 @@ std::string sentence(std::vector<Record const*> const& shown) {
 }  // namespace
 
 void add_kept(Document& document, Facts const& facts) {
-  document.heading(2, "3. What is kept");
+  document.section("What is kept");
   document.say(
       "Without torque a body keeps its energy and its angular momentum in space, L: its length |L| and its direction. "
       "A method in quaternions should keep their norm besides.");

@@ -35,7 +35,7 @@ Entry half_width_of(Order const& order) {
 }  // namespace
 
 void add_orders(Document& document, Facts const& facts) {
-  document.heading(2, "9. Measured orders");
+  document.section("Measured orders");
   document.say(
       fmt::format("Least squares of the logarithm of the attitude error at the end against that of h, over errors "
                   "above ten times the reference's bar and {} rad (round-off), and below {} rad; fixed steps only. The "

@@ -26,6 +26,9 @@ Document document_of(results::Contents const& contents) {
   add_claims(document, facts);
   add_erratum(document, facts);
   add_sample_period(document, facts);
+  add_sync(document, facts);
+  add_consensus(document, facts);
+  add_dead_zone(document, facts);
   add_orders(document, facts);
   add_failures(document, facts);
   add_references(document, facts);

@@ -110,7 +110,7 @@ void add(Document& document, Facts const& facts, Comparison const& c, std::size_
 }  // namespace
 
 void add_sample_period(Document& document, Facts const& facts) {
-  document.heading(2, "8. Tying the sample period to the step");
+  document.section("Tying the sample period to the step");
   document.say(
       "The sample period of a controller belongs to the problem. If each step of the integrator takes a new sample, as "
       "in the paper (variant coupled), every step size is a different control system.");

@@ -1,6 +1,7 @@
 #pragma once
 /// The sections of the report, in its order. Each appends to the document what the records hold, and says in a sentence
 /// what they do not hold.
+#include "report/cases.hpp"
 #include "report/document.hpp"
 #include "report/facts.hpp"
 
@@ -14,6 +15,11 @@ void add_control_cases(Document& document, Facts const& facts);
 void add_claims(Document& document, Facts const& facts);
 void add_erratum(Document& document, Facts const& facts);
 void add_sample_period(Document& document, Facts const& facts);
+void add_sync(Document& document, Facts const& facts);
+void add_consensus(Document& document, Facts const& facts);
+/// The steady rates against the tolerance: part of the swarm's section.
+void add_tolerance(Document& document, Facts const& facts);
+void add_dead_zone(Document& document, Facts const& facts);
 void add_orders(Document& document, Facts const& facts);
 void add_failures(Document& document, Facts const& facts);
 void add_references(Document& document, Facts const& facts);
@@ -30,16 +36,15 @@ void add_winners(Document& document, Facts const& facts);
 /// The machine, and what a printed CPU time is: for the captions of tables of cost.
 std::string timing_note(Facts const& facts);
 
-/// The tether problem's three strategies, in the paper's order.
-inline constexpr std::string_view control_cases[] = {"case1", "case2", "case3"};
-
-/// Of each initial value problem with that case the most accurate successful run, preferably one with a history.
-struct CaseRuns {
-  std::string label;                                 ///< what the three cases share: gain set, sign, parameters
-  std::string title;                                 ///< its short name, "g1" or "g1 as_printed"
-  std::map<std::string, results::Record const*> of;  ///< "case1" -> its run
-};
-/// The tether problem's controlled runs, one entry per gain set, sign and set of parameters.
-std::vector<CaseRuns> case_runs(Facts const& facts);
+// Parts of a paper's section.
+/// The heading and what the paper is; if there are runs, where its data come from and what is wrong in print.
+void add_paper_head(Document& document, Facts const& facts, Paper const& paper);
+/// What the paper states against its runs, as a table: a row for each case and claim, a column for whatever its cases
+/// share. Statements about all cases are asked of each.
+Table claim_table(Paper const& paper, std::vector<CaseRuns> const& sets, std::string name, std::string caption);
+/// The same of the paper's own parameters, with what was run.
+void add_paper_claims(Document& document, Facts const& facts, Paper const& paper);
+/// "1.23: yes": a claim's value and whether it bears the paper out.
+Entry verdict_of(results::Record const* run, std::string_view claim, double factor = 1);
 
 }  // namespace polhode::report

@@ -152,7 +152,7 @@ Table cheapest_table(Instance const& instance, Measure measure, std::size_t n) {
 }  // namespace
 
 void add_work_precision(Document& document, Facts const& facts) {
-  document.heading(2, "4. Work and precision");
+  document.section("Work and precision");
   document.say(
       "Runs are compared at the error that was measured, never at the tolerance that was asked for. Only runs with "
       "status ok are ranked. A run that was not timed is ranked by its evaluations alone.");
