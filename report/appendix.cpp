@@ -2,6 +2,7 @@
 
 #include <map>
 #include <set>
+#include <tuple>
 
 #include "report/sections.hpp"
 #include "report/text.hpp"
@@ -20,6 +21,14 @@ std::string meta_of(Facts const& facts, std::string const& name) {
   }
   return listed({values.begin(), values.end()});
 }
+
+/// Status, reason, name of the problem; its label and the method, which refusals for one reason share a row without.
+using FailureKey = std::tuple<std::string, std::string, std::string, std::string, std::string>;
+
+struct Failures {
+  std::set<std::string> problems, methods;
+  std::vector<std::string> controls;  ///< of every run
+};
 
 }  // namespace
 
@@ -45,29 +54,37 @@ std::string timing_note(Facts const& facts) {
 
 void add_failures(Document& document, Facts const& facts) {
   document.section("Failures and refusals");
-  // status, reason, problem, method -> step sizes and tolerances
-  std::map<std::tuple<std::string, std::string, std::string, std::string>, std::vector<std::string>> groups;
+  std::map<FailureKey, Failures> groups;
   std::size_t n = 0;
   for (Instance const& instance : facts.instances) {
     for (Record const* run : instance.runs) {
       if (is_ok(*run)) continue;
       ++n;
+      bool const refused = run->status == results::Status::refused;
       std::string const reason = run->reason.empty() ? "no reason recorded" : run->reason;
-      groups[{std::string(name_of(run->status)), reason, instance.label, method_of(run->of)}].push_back(
-          control_of(run->of));
+      Failures& group = groups[{std::string(name_of(run->status)), reason, run->of.problem,
+                                refused ? "" : instance.label, refused ? "" : method_of(run->of)}];
+      group.problems.insert(instance.label);
+      group.methods.insert(method_of(run->of));
+      group.controls.push_back(control_of(run->of));
     }
   }
   Table table{
       .name = "failures",
       .caption = fmt::format("{} that did not end well, by status and reason. A failure counts as infinite in every "
-                             "ranking above.",
+                             "ranking above. Refusals of a problem for one reason share a row.",
                              counted(n, "run", "runs")),
       .columns = {{"status"}, {"reason"}, {"problem"}, {"method"}, {"runs", true}, {"control"}},
       .rows = {}};
-  for (auto const& [key, controls] : groups) {
-    auto const& [status, reason, problem, method] = key;
-    table.rows.push_back({status, reason, problem, method, std::to_string(controls.size()),
-                          fmt::format("{}", fmt::join(controls, "; "))});
+  for (auto const& [key, group] : groups) {
+    auto const& [status, reason, name, label, method] = key;
+    bool const alike = group.problems.size() == 1 && group.methods.size() == 1;
+    table.rows.push_back({status, reason,
+                          group.problems.size() == 1 ? *group.problems.begin()
+                                                     : fmt::format("{}, {} variants", name, group.problems.size()),
+                          shortened({group.methods.begin(), group.methods.end()}, 9),
+                          std::to_string(group.controls.size()),
+                          alike ? fmt::format("{}", fmt::join(group.controls, "; ")) : std::string(absent)});
   }
   if (n > 0) {
     document.add(std::move(table));

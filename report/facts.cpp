@@ -186,7 +186,8 @@ bool Instance::comparable() const {
 }
 
 bool is_aside(Cell const& cell) {
-  return has_word(cell.variant, "coupled") || has_word(cell.variant, "as_printed");
+  constexpr std::string_view words[] = {"coupled", "as_printed", "unlocated"};
+  return std::ranges::any_of(words, [&](auto word) { return has_word(cell.variant, word); });
 }
 
 std::vector<Cost> ranking(Instance const& instance, double target, Measure measure) {

@@ -51,8 +51,8 @@ struct Instance {
   bool comparable() const;
 };
 
-/// True for the variants that are another problem than the one they are scored against (`coupled`), or a misprint
-/// (`as_printed`): each has its own section and no part in any ranking.
+/// True for the variants that are another problem than the one they are scored against (`coupled`), a misprint
+/// (`as_printed`), or a demonstration (`unlocated`): each has its own section and no part in any ranking.
 bool is_aside(results::Cell const& cell);
 
 /// What cost is counted in.

@@ -146,7 +146,7 @@ Curve level(std::string label, double value, Tolerances const& x, int colour, Da
 
 /// A dotted line across the panel where the printed rates appear.
 Curve upright(Panel const& panel, Try const& hit) {
-  double low = INFINITY, high = -INFINITY;
+  double low = HUGE_VAL, high = -HUGE_VAL;
   for (Curve const& curve : panel.curves) {
     for (Point const& p : curve.points) {
       low = std::min(low, p.y);
@@ -276,11 +276,22 @@ void say(Document& document, Study const& study) {
     if (name == hit.run->of.integrator || same == tries.end()) continue;
     others += fmt::format("{}{} says {:.3f}", others.empty() ? "" : ", ", name, same->rates[0]);
   }
+  std::size_t runs = 0;
+  double next = INFINITY;
+  for (auto const& [name, tries] : study.methods) {
+    for (Try const& t : tries) {
+      ++runs;
+      if (t.run != hit.run) next = std::min(next, t.from_print);
+    }
+  }
   document.say(fmt::format(
-      "The printed rates are no property of the swarm but of a program and its tolerance: {} at {} gives {} rad/s, "
-      "within "
-      "{} of print.{}",
+      "The printed rates are those of a program at a tolerance, not of the swarm: {} at {} gives {} rad/s, within {} "
+      "of "
+      "print.{}{}",
       hit.run->of.integrator, tolerances_of(*hit.run), in_words(hit.rates, 3), significant(hit.from_print, 2),
+      runs > 1 ? fmt::format(" Of the other {} the nearest is {} rad/s off.",
+                             counted(runs - 1, "adaptive run", "adaptive runs"), significant(next, 2))
+               : "",
       others.empty() ? ""
                      : fmt::format(" At the same tolerance other programs disagree on the first rate, {:.3f}: {}.",
                                    hit.rates[0], others)));
@@ -288,15 +299,15 @@ void say(Document& document, Study const& study) {
   for (auto const& [name, tries] : study.methods) {
     auto const from = settled_from(tries);
     if (from) {
-      settled.push_back(fmt::format("{} from {}", name, tolerance(from)));
+      settled.push_back(fmt::format("{} from {} on", name, tolerance(from)));
     } else {
       open.push_back(name);
     }
   }
   if (!settled.empty()) {
-    document.say(fmt::format("They dissolve as the tolerance tightens: within {} rad/s of the limit stay {}{}.",
-                             significant(close), listed(settled),
-                             open.empty() ? "" : fmt::format("; nowhere here: {}", listed(open))));
+    document.say(fmt::format(
+        "They dissolve as the relative tolerance tightens: within {} rad/s of the limit stay {}{}.", significant(close),
+        listed(settled), open.empty() ? "" : fmt::format("; nowhere here: {}", listed(open))));
   }
 }
 
@@ -316,8 +327,8 @@ void add_tolerance(Document& document, Facts const& facts) {
     double const gap = distance(other->printed, other->limit);
     (gap <= close ? agreeing : not_agreeing).push_back(fmt::format("{} within {} rad/s", start, significant(gap, 2)));
   }
-  if (!agreeing.empty()) document.say(fmt::format("Print and limit agree of {}.", listed(agreeing)));
-  if (!not_agreeing.empty()) document.say(fmt::format("They do not agree of {}.", listed(not_agreeing)));
+  if (!agreeing.empty()) document.say(fmt::format("Of the other starts print and limit agree: {}.", listed(agreeing)));
+  if (!not_agreeing.empty()) document.say(fmt::format("Of other starts they do not agree: {}.", listed(not_agreeing)));
 }
 
 }  // namespace polhode::report
