@@ -5,10 +5,14 @@
 
 namespace {
 
-thread_local std::int64_t count = 0;
+thread_local std::int64_t count = 0, bytes = 0;
 
-void* allocate(std::size_t size) {
+void note(std::size_t size) {
   ++count;
+  bytes += std::int64_t(size);
+}
+void* allocate(std::size_t size) {
+  note(size);
   if (void* memory = std::malloc(size > 0 ? size : 1)) return memory;
   throw std::bad_alloc();
 }
@@ -23,11 +27,11 @@ void* operator new[](std::size_t size) {
   return allocate(size);
 }
 void* operator new(std::size_t size, std::nothrow_t const&) noexcept {
-  ++count;
+  note(size);
   return std::malloc(size > 0 ? size : 1);
 }
 void* operator new[](std::size_t size, std::nothrow_t const&) noexcept {
-  ++count;
+  note(size);
   return std::malloc(size > 0 ? size : 1);
 }
 void operator delete(void* memory) noexcept {
@@ -53,6 +57,9 @@ namespace polhode::bench {
 
 std::int64_t allocations_of_this_thread() {
   return count;
+}
+std::int64_t allocated_bytes_of_this_thread() {
+  return bytes;
 }
 
 }  // namespace polhode::bench

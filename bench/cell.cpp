@@ -2,91 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cmath>
+
+#include "bench/recorder.hpp"
 
 namespace polhode::bench {
 namespace {
-
-/// Thrown by a watch when a run has used up its time.
-struct Timeout {};
-
-class Deadline {
- public:
-  explicit Deadline(Limits const& limits)
-      : stop_(limits.stop), limited_(limits.timeout > 0), end_(Clock::now() + to_ticks(limits.timeout)) {}
-  void check() {
-    if (++calls_ % 256 != 0) return;
-    if (stop_ && *stop_) throw Interrupted{};
-    if (limited_ && Clock::now() > end_) throw Timeout{};
-  }
-
- private:
-  using Clock = std::chrono::steady_clock;
-  static Clock::duration to_ticks(double seconds) {
-    return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
-  }
-  std::atomic<bool> const* stop_;
-  bool limited_;
-  Clock::time_point end_;
-  std::int64_t calls_ = 0;
-};
-
-template <class V>
-auto widened(V const& v) {
-  if constexpr (requires { v.w; })
-    return Quat<Quad>{v.x, v.y, v.z, v.w};
-  else
-    return Vec3<Quad>{v.x, v.y, v.z};
-}
-
-/// Collects the history, and the metrics if they are wanted.
-template <Space M>
-class Recorder final : public Watch<M> {
-  using A = typename M::Factor;
-  using Wide = typename A::template Over<Quad>;
-
- public:
-  Recorder(Erased<M> const& problem, std::size_t own_columns, Metrics* metrics, History& history, Limits const& limits)
-      : problem_(problem), own_columns_(own_columns), metrics_(metrics), history_(history), deadline_(limits) {}
-
-  void at_stop(Stop const& stop, Point<M> const& x) override {
-    if (stop.time == 0 && metrics_) metrics_->see(sight(0, x, {}));
-    if (!stop.sample && !stop.output) return;
-    Quat<double> const q = A::attitude(x.first);
-    std::vector<double> row{q.x, q.y, q.z, q.w, x.second.x, x.second.y, x.second.z};
-    row.resize(row.size() + own_columns_);
-    problem_.show(x, std::span(row).last(own_columns_));
-    history_.times.push_back(stop.time);
-    history_.rows.push_back(std::move(row));
-  }
-  void after_step(double t, Point<M> const& x, Projections const& projections) override {
-    deadline_.check();
-    reached = t;
-    if (metrics_) metrics_->see(sight(t, x, projections));
-  }
-
-  double reached = 0;  ///< the time of the last accepted step [s]
-
- private:
-  static Sight sight(double t, Point<M> const& x, Projections const& projections) {
-    Sight seen{
-        .t = t, .q = widened(A::attitude(x.first)), .omega = widened(x.second), .raw_defect = projections.raw_defect};
-    if constexpr (std::same_as<Point<A>, Quat<double>>) {
-      seen.drift = double(dot(seen.q, seen.q) - 1);
-    } else {
-      Mat3<Quad> const wide{widened(x.first.e1), widened(x.first.e2), widened(x.first.e3)};
-      seen.drift = double(Wide::defect(wide));
-    }
-    return seen;
-  }
-
-  Erased<M> const& problem_;
-  std::size_t own_columns_;
-  Metrics* metrics_;
-  History& history_;
-  Deadline deadline_;
-};
 
 results::Status status_of(Status status) {
   switch (status) {
@@ -111,19 +32,53 @@ MethodOn<M> const& method_named(std::string_view name) {
   throw std::out_of_range("no integrator " + std::string(name));
 }
 
-/// Runs a prepared cell on its erased problem.
+/// Columns of one body's state, after `prefix`.
+template <Attitude A>
+void add_columns(std::vector<Column>& columns, std::string const& prefix) {
+  for (char const* name : {"q1", "q2", "q3", "q4"}) columns.push_back({prefix + name, ""});
+  for (char const* name : {"wx", "wy", "wz"}) columns.push_back({prefix + name, "rad/s"});
+  if constexpr (shows_parameters<A>)
+    for (char const* name : {"s1", "s2", "s3"}) columns.push_back({prefix + name, ""});
+}
+
+}  // namespace
+
+std::vector<Column> columns_of(PreparedCell const& prepared) {
+  std::vector<Column> columns;
+  ProblemInFormulation const problem = prepared.problem->in(prepared.cell.formulation);
+  std::visit(
+      [&]<Space M>(std::unique_ptr<Erased<M>> const& field) {
+        int body = 0;
+        each_attitude<M>(field->initial(), [&]<class A>(Point<A> const&, Vec3<double> const*) {
+          add_columns<A>(columns, PowerSpace<M> ? fmt::format("b{}.", ++body) : "");
+        });
+      },
+      problem);
+  for (Column const& column : prepared.problem->columns()) columns.push_back(column);
+  return columns;
+}
+
+namespace {
+
+/// What a measured run keeps: many bodies would fill the memory.
+std::vector<Column> measured_columns(PreparedCell const& prepared) {
+  return prepared.problem->body() ? columns_of(prepared) : prepared.problem->columns();
+}
+
+/// Runs a prepared cell on its erased problem. A measured run of many bodies keeps the problem's own columns alone.
 Trajectory run(PreparedCell const& prepared, Metrics* metrics, Limits const& limits) {
   Trajectory trajectory;
-  trajectory.columns = columns_of(*prepared.problem);
+  trajectory.columns = metrics ? measured_columns(prepared) : columns_of(prepared);
   for (Column const& column : trajectory.columns) trajectory.history.columns.push_back(column.name);
-  std::size_t const own = prepared.problem->columns().size();
 
   ProblemInFormulation const problem = prepared.problem->in(prepared.cell.formulation);
   std::visit(
       [&]<Space M>(std::unique_ptr<Erased<M>> const& field) {
-        Recorder<M> recorder(*field, own, metrics, trajectory.history, limits);
+        Recorder<M> recorder(*field, prepared, metrics, trajectory.history, limits);
         try {
           trajectory.outcome = method_named<M>(prepared.cell.integrator).solve(*field, prepared.plan, recorder);
+          trajectory.history.events = trajectory.outcome.located.times;
+          if (trajectory.outcome.ended) std::rethrow_exception(trajectory.outcome.ended);
           trajectory.status = status_of(trajectory.outcome.status);
           if (trajectory.status != results::Status::ok)
             trajectory.reason =
@@ -132,6 +87,12 @@ Trajectory run(PreparedCell const& prepared, Metrics* metrics, Limits const& lim
           trajectory.status = results::Status::timeout;
           trajectory.reason =
               fmt::format("stopped after {:g} s of wall time at t = {:.6g} s", limits.timeout, recorder.reached);
+        } catch (Stalled const&) {
+          trajectory.status = results::Status::stalled;
+          trajectory.reason = fmt::format(
+              "at t = {:.6g} s its steps are so short that the horizon would take more "
+              "than 2e7 of them",
+              recorder.reached);
         } catch (std::exception const& error) {
           trajectory.status = results::Status::crashed;
           trajectory.reason = error.what();
@@ -146,20 +107,26 @@ bool divides(double h, double period) {
   return std::round(ratio) >= 1 && std::fabs(ratio - std::round(ratio)) <= 1e-9 * ratio;
 }
 
+template <Space M>
+constexpr bool quaternion_body = false;
+template <Attitude A>
+constexpr bool quaternion_body<RigidBody<A>> = std::same_as<Point<A>, Quat<double>>;
+
 /// Why a norm policy is refused for a method on space M; empty if it is not.
 template <Space M>
 std::string_view policy_refusal(MethodInfo const& info, NormPolicy policy) {
   if (policy == NormPolicy::none) return "";
   if (!M::constrained) return "this formulation has no norm to project";
   if (policy == NormPolicy::native) return info.projects_natively ? "" : "has no projection of its own";
-  if (policy == NormPolicy::project_multiplier && !std::same_as<Point<typename M::Factor>, Quat<double>>)
-    return "the multiplier form of the projection is that of a quaternion";
+  if (policy == NormPolicy::project_multiplier && !quaternion_body<M>)
+    return "the multiplier form of the projection is that of one body's quaternion";
   return info.no_projection;
 }
 
 /// Why the combination does not run, in the order in which a user would want to know.
 std::string refusal_of(PreparedCell const& prepared) {
-  std::string refusal;
+  std::string refusal = prepared.problem->refusal(prepared.cell.formulation);
+  if (!refusal.empty()) return refusal;
   ProblemInFormulation const problem = prepared.problem->in(prepared.cell.formulation);
   std::visit(
       [&]<Space M>(std::unique_ptr<Erased<M>> const&) {
@@ -169,6 +136,18 @@ std::string refusal_of(PreparedCell const& prepared) {
       },
       problem);
   return refusal;
+}
+
+/// The method can end its steps on state events, and the field has some to end on.
+bool locates_events(PreparedCell const& prepared) {
+  bool locates = false;
+  ProblemInFormulation const problem = prepared.problem->in(prepared.cell.formulation);
+  std::visit(
+      [&]<Space M>(std::unique_ptr<Erased<M>> const& field) {
+        locates = field->state_events() > 0 && method_named<M>(prepared.cell.integrator).info->locates_events;
+      },
+      problem);
+  return locates;
 }
 
 NormPolicy policy_named(std::string_view name) {
@@ -212,13 +191,6 @@ void check_number_of_stops(Schedule const& schedule) {
 
 }  // namespace
 
-std::vector<Column> columns_of(ChosenProblem const& problem) {
-  std::vector<Column> columns{{"q1", ""},      {"q2", ""},      {"q3", ""},     {"q4", ""},
-                              {"wx", "rad/s"}, {"wy", "rad/s"}, {"wz", "rad/s"}};
-  for (Column const& column : problem.columns()) columns.push_back(column);
-  return columns;
-}
-
 PreparedCell prepare(results::Cell cell, double every) {
   check_words(vocabulary(), cell);
   PreparedCell prepared;
@@ -242,8 +214,7 @@ PreparedCell prepare(results::Cell cell, double every) {
                     every, *cell.h, *cell.h * std::max(1.0, std::round(every / *cell.h))));
 
   prepared.schedule = {.t_end = cell.t_end, .sample_period = period, .jumps = {}, .output_period = every};
-  ProblemInFormulation const problem = prepared.problem->in(cell.formulation);
-  std::visit([&](auto const& field) { prepared.schedule.jumps = field->time_events(); }, problem);
+  std::visit([&](auto const& field) { prepared.schedule.jumps = field->time_events(); }, prepared.problem->as_series());
   check_number_of_stops(prepared.schedule);
   prepared.plan.stops = stops_of(prepared.schedule);
   prepared.plan.policy = policy_named(cell.policy);
@@ -255,10 +226,13 @@ PreparedCell prepare(results::Cell cell, double every) {
   prepared.physics.variant = without(cell.variant, prepared.problem->info().driven);
   prepared.cell = std::move(cell);
   prepared.refusal = refusal_of(prepared);
+  prepared.plan.locate = prepared.problem->switches() && prepared.problem->wants_events() && prepared.refusal.empty() &&
+                         locates_events(prepared);
   return prepared;
 }
 
-std::shared_ptr<UsableReference const> References::of(PreparedCell const& prepared) {
+FoundReference References::of(PreparedCell const& prepared) {
+  if (std::string const why = prepared.problem->no_reference(); !why.empty()) return {nullptr, why};
   std::shared_ptr<Slot> slot;
   {
     std::lock_guard const lock(mutex_);
@@ -272,9 +246,13 @@ std::shared_ptr<UsableReference const> References::of(PreparedCell const& prepar
     Schedule schedule = prepared.schedule;
     schedule.sample_period = problem->sample_period();
     schedule.output_period = 0;
-    slot->reference = obtain(prepared.physics, *problem, schedule, committed_);
+    try {
+      slot->reference = obtain(prepared.physics, *problem, schedule, committed_);
+    } catch (Uncertified const& error) {
+      slot->why_none = error.what();
+    }
   });
-  return slot->reference;
+  return {slot->reference, slot->why_none};
 }
 
 results::Record refused(PreparedCell const& prepared, std::string const& build) {
@@ -294,18 +272,22 @@ Measured measure(PreparedCell const& prepared, References& references, std::stri
   record.build = build;
   record.of = prepared.cell;
 
-  auto const reference = references.of(prepared);
-  record.reference = reference->id;
-  record.reference_bar = reference->bar;
-  Metrics metrics(*reference, prepared.problem->body(), prepared.problem->torque_free(), prepared.cell.t_end);
+  auto const [reference, why_none] = references.of(prepared);
+  if (reference) {
+    record.reference = reference->id;
+    record.reference_bar = reference->bar;
+  }
+  Metrics metrics(reference.get(), prepared.problem->torque_free() ? prepared.problem->body() : nullptr,
+                  prepared.cell.t_end);
   Trajectory trajectory = run(prepared, &metrics, limits);
 
   record.status = trajectory.status;
   record.reason = trajectory.reason;
   Outcome const& outcome = trajectory.outcome;
   record.steps = outcome.work.steps;
-  if (prepared.cell.rtol) record.rejected = outcome.work.rejected;
+  if (prepared.cell.rtol || prepared.plan.locate) record.rejected = outcome.work.rejected;
   record.evaluations = outcome.evaluations;
+  if (prepared.problem->switches()) record.events_located = outcome.located.events;
   record.jacobians = outcome.work.jacobians;
   record.iterations = outcome.work.iterations;
   if (prepared.schedule.sample_period > 0)
@@ -315,7 +297,7 @@ Measured measure(PreparedCell const& prepared, References& references, std::stri
   if (record.status == results::Status::ok) {
     metrics.fill(record);
     if (prepared.plan.policy != NormPolicy::none) record.projection_work = outcome.projections.work;
-    if (*record.attitude_error_max > 1) {
+    if (record.attitude_error_max.value_or(0) > 1) {
       record.status = results::Status::inaccurate;
       record.reason = fmt::format("attitude error {:.2g} rad: no digit is right", *record.attitude_error_max);
     }
@@ -323,9 +305,12 @@ Measured measure(PreparedCell const& prepared, References& references, std::stri
       std::string const verdict = !claim.holds ? "no printed value" : *claim.holds ? "reproduced" : "not reproduced";
       record.claims[claim.name] = {claim.value, claim.published, verdict};
     }
+    for (std::string const& remark : {prepared.problem->warning(), why_none})
+      if (!remark.empty()) record.reason += (record.reason.empty() ? "" : "; ") + remark;
   }
   measured.drift = metrics.drift_series(record.cell);
   measured.history = std::move(trajectory.history);
+  measured.columns = std::move(trajectory.columns);
   return measured;
 }
 

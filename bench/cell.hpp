@@ -29,15 +29,23 @@ struct PreparedCell {
 /// Throws UsageError: unknown words, broken parameter rules, an h that does not divide the sample period or `every`.
 PreparedCell prepare(results::Cell cell, double every = 0);
 
+/// A reference, or why there is none.
+struct FoundReference {
+  std::shared_ptr<UsableReference const> reference;
+  std::string why_none;
+};
+
 /// References by subject, each made once and shared between threads.
 class References {
  public:
   explicit References(std::filesystem::path committed) : committed_(std::move(committed)) {}
-  std::shared_ptr<UsableReference const> of(PreparedCell const& prepared);
+  /// Throws ReferenceError if a committed one is damaged or stale.
+  FoundReference of(PreparedCell const& prepared);
 
  private:
   struct Slot {
     std::once_flag made;
+    std::string why_none;
     std::shared_ptr<UsableReference const> reference;
   };
   std::filesystem::path committed_;
@@ -49,7 +57,8 @@ class References {
 struct Measured {
   results::Record record;
   results::Series drift;
-  History history;  ///< at samples and output times
+  History history;              ///< at samples and output times
+  std::vector<Column> columns;  ///< of the history
 };
 
 /// Thrown by a run that was asked to stop: there is nothing to record.
@@ -77,7 +86,8 @@ struct Trajectory {
 };
 Trajectory simulate(PreparedCell const& prepared, Limits const& limits = {});
 
-/// Columns of a history with their units: q1 .. q4, wx wy wz, and the problem's own.
-std::vector<Column> columns_of(ChosenProblem const& problem);
+/// Columns of a trajectory with their units: q1 .. q4, wx wy wz (and s1 s2 s3 where they are the state) of every body,
+/// and the problem's own.
+std::vector<Column> columns_of(PreparedCell const& prepared);
 
 }  // namespace polhode::bench

@@ -11,6 +11,7 @@
 #include <set>
 
 #include "bench/cell.hpp"
+#include "problems/graph.hpp"
 #include "results/store.hpp"
 
 namespace polhode::bench {
@@ -49,12 +50,12 @@ struct CellFlags {
     verb.add_option("PROBLEM", cell.problem, "Problem; see `polhode list problems`")->required();
     verb.add_option("--variant", cell.variant, "Variant words, joined by commas");
     has_t_end = add_number(verb, "--t-end", t_end, "Horizon [s]; default the problem's own");
-    verb.add_option("--set", settings, "Change a parameter: NAME=NUMBER[,NUMBER...]; repeatable")
+    verb.add_option("--set", settings, "Change a parameter: NAME=NUMBER[,NUMBER...], or graph=FILE; repeatable")
         ->type_name("NAME=VALUE")
         ->allow_extra_args(false);  // what follows the value is no second one: it may be the problem
   }
   void add_method(CLI::App& verb) {
-    verb.add_option("--formulation", cell.formulation, "Attitude description: quaternion, s3, so3")
+    verb.add_option("--formulation", cell.formulation, "Attitude description; see `polhode list problems`")
         ->default_str("quaternion");
     verb.add_option("--integrator", cell.integrator, "Integrator; see `polhode list integrators`")->required();
     verb.add_option("--policy", cell.policy, "Norm policy: none, project")->default_str("none");
@@ -145,6 +146,7 @@ int run_simulation(CellFlags const& flags, double every, std::string const& out)
   if (!prepared.refusal.empty())
     throw UsageError(
         fmt::format("{} on {}: {}", prepared.cell.integrator, prepared.cell.formulation, prepared.refusal));
+  warn(prepared.problem->warning());
   Trajectory trajectory = simulate(prepared);
   keep_outputs(trajectory, prepared.plan.stops);
   write_text(out, csv_of(prepared, trajectory));
@@ -306,6 +308,16 @@ std::pair<std::string, std::vector<double>> parse_setting(std::string const& tex
   auto const equals = text.find('=');
   if (equals == std::string::npos || equals == 0)
     throw UsageError(fmt::format("--set {}: write NAME=NUMBER[,NUMBER...]", quote(text)));
+  std::string const name = text.substr(0, equals);
+  std::string const value = text.substr(equals + 1);
+  bool const numbers = value.find_first_not_of("0123456789+-.,eE ") == std::string::npos;
+  if (name == "graph" && !numbers) {
+    try {
+      return {name, read_graph(value)};
+    } catch (ParameterError const& error) {
+      throw SuiteError(error.what());
+    }
+  }
   std::vector<double> values;
   for (std::size_t from = equals + 1; from <= text.size();) {
     std::size_t const to = std::min(text.find(',', from), text.size());
@@ -316,7 +328,7 @@ std::pair<std::string, std::vector<double>> parse_setting(std::string const& tex
     }
     from = to + 1;
   }
-  return {text.substr(0, equals), values};
+  return {name, values};
 }
 
 void add_commands(CLI::App& app, int& code) {

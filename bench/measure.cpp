@@ -61,36 +61,58 @@ std::optional<double> growth_exponent(std::vector<double> const& times, std::vec
   return median(std::move(slopes));
 }
 
-Metrics::Metrics(UsableReference const& reference, BodyParameters const& body, bool torque_free, double t_end)
-    : reference_(reference), inertia_(body.matrix<Quad>()), torque_free_(torque_free), t_end_(t_end) {}
+Metrics::Metrics(UsableReference const* reference, BodyParameters const* free_body, double t_end)
+    : reference_(reference), t_end_(t_end) {
+  if (free_body) inertia_ = free_body->matrix<Quad>();
+}
 
 void Metrics::see(Sight const& sight) {
   bool const first = drift_times_.empty();
+  double drift = 0;
+  for (BodySight const& body : sight.bodies)
+    if (std::fabs(body.drift) > std::fabs(drift)) drift = body.drift;
   if (!first)  // trapezoidal rule on the squares
-    drift_squares_ +=
-        (sight.t - drift_times_.back()) * (sight.drift * sight.drift + drifts_.back() * drifts_.back()) / 2;
+    drift_squares_ += (sight.t - drift_times_.back()) * (drift * drift + drifts_.back() * drifts_.back()) / 2;
   drift_times_.push_back(sight.t);
-  drifts_.push_back(sight.drift);
-  drift_max_ = std::max(drift_max_, std::fabs(sight.drift));
-  drift_final_ = sight.drift;
-  raw_max_ = std::max({raw_max_, sight.raw_defect, std::fabs(sight.drift)});
+  drifts_.push_back(drift);
+  drift_max_ = std::max(drift_max_, std::fabs(drift));
+  drift_final_ = drift;
+  raw_max_ = std::max({raw_max_, sight.raw_defect, std::fabs(drift)});
 
-  Invariants const now = invariants_of(inertia_, sight.q, sight.omega);
-  if (first) start_ = now;
-  auto const relative = [](Quad a, Quad b) { return b == 0 ? double(abs_of(a)) : double(abs_of(Quad((a - b) / b))); };
-  energy_max_ = std::max(energy_max_, relative(now.energy, start_->energy));
-  momentum_max_ = std::max(momentum_max_, relative(now.momentum, start_->momentum));
-  direction_max_ = std::max(direction_max_, angle(now.direction, start_->direction));
+  if (inertia_) {
+    Invariants const now = invariants_of(*inertia_, sight.bodies[0].q, sight.bodies[0].omega);
+    if (first) start_ = now;
+    auto const relative = [](Quad a, Quad b) { return b == 0 ? double(abs_of(a)) : double(abs_of(Quad((a - b) / b))); };
+    energy_max_ = std::max(energy_max_, relative(now.energy, start_->energy));
+    momentum_max_ = std::max(momentum_max_, relative(now.momentum, start_->momentum));
+    direction_max_ = std::max(direction_max_, angle(now.direction, start_->direction));
+  }
 
   bool const end = sight.t >= t_end_;
   if (sight.t >= next_comparison_ || end) compare(sight);
 }
 
 void Metrics::compare(Sight const& sight) {
-  QuadState const exact = reference_.reference.at(sight.t);
-  double const error = double(angle_between(exact.q, sight.q));
-  double const rate_scale = reference_.reference.largest_rate();
-  double const rate_error = double(length(sight.omega - exact.omega)) / (rate_scale > 0 ? rate_scale : 1);
+  std::vector<double> moment{sight.t, std::fabs(drifts_.back()), raw_max_};
+  if (reference_) moment.push_back(errors_of(sight));
+  double const interval = t_end_ / comparisons;
+  next_comparison_ = interval * (std::floor(sight.t / interval * (1 + 1e-12)) + 1) * (1 - 1e-12);
+
+  if (sight.t < next_moment_ && sight.t < t_end_) return;
+  if (sight.t > 0) moments_.push_back(std::move(moment));
+  double const ratio = std::pow(10.0, decades_kept / moments_kept);
+  next_moment_ = std::max(sight.t * ratio, t_end_ * std::pow(10.0, -decades_kept));
+}
+
+double Metrics::errors_of(Sight const& sight) {
+  QuadState const exact = reference_->reference.at(sight.t);
+  double const rate_scale = reference_->reference.largest_rate();
+  double error = 0, rate_error = 0;
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    error = std::max(error, double(angle_between(exact[i].q, sight.bodies[i].q)));
+    rate_error = std::max(rate_error, double(length(sight.bodies[i].omega - exact[i].omega)));
+  }
+  rate_error /= rate_scale > 0 ? rate_scale : 1;
   // Trapezoidal rule on the squares.
   attitude_squares_ += (sight.t - last_comparison_) * (error * error + attitude_end_ * attitude_end_) / 2;
   attitude_end_ = error;
@@ -98,13 +120,7 @@ void Metrics::compare(Sight const& sight) {
   attitude_max_ = std::max(attitude_max_, error);
   rate_max_ = std::max(rate_max_, rate_error);
   last_comparison_ = sight.t;
-  double const interval = t_end_ / comparisons;
-  next_comparison_ = interval * (std::floor(sight.t / interval * (1 + 1e-12)) + 1) * (1 - 1e-12);
-
-  if (sight.t < next_moment_ && sight.t < t_end_) return;
-  if (sight.t > 0) moments_.push_back({sight.t, std::fabs(sight.drift), raw_max_, error});
-  double const ratio = std::pow(10.0, decades_kept / moments_kept);
-  next_moment_ = std::max(sight.t * ratio, t_end_ * std::pow(10.0, -decades_kept));
+  return error;
 }
 
 void Metrics::fill(results::Record& record) const {
@@ -113,24 +129,31 @@ void Metrics::fill(results::Record& record) const {
   record.norm_drift_final = drift_final_;
   record.norm_drift_rms = std::sqrt(drift_squares_ / t_end_);
   record.norm_growth_exponent = growth_exponent(drift_times_, drifts_);
-  if (torque_free_) {
+  if (inertia_) {
     record.energy_drift_max = energy_max_;
     record.momentum_drift_max = momentum_max_;
     record.momentum_direction_max = direction_max_;
   }
+  if (!reference_) return;
   record.attitude_error_max = attitude_max_;
   record.attitude_error_end = attitude_end_;
   record.attitude_error_l2 = std::sqrt(attitude_squares_ / t_end_);
+  if (!reference_->reference.has_rates()) return;
   record.rate_error_max = rate_max_;
   record.rate_error_end = rate_end_;
 }
 
 results::Series Metrics::drift_series(std::string const& cell) const {
-  return {.cell = cell,
-          .name = "drift",
-          .columns = {"t", "norm_drift", "norm_drift_raw", "attitude_error"},
-          .units = {"s", "", "", "rad"},
-          .rows = moments_};
+  results::Series series{.cell = cell,
+                         .name = "drift",
+                         .columns = {"t", "norm_drift", "norm_drift_raw"},
+                         .units = {"s", "", ""},
+                         .rows = moments_};
+  if (reference_) {
+    series.columns.emplace_back("attitude_error");
+    series.units.emplace_back("rad");
+  }
+  return series;
 }
 
 }  // namespace polhode::bench

@@ -10,11 +10,15 @@
 namespace polhode::bench {
 
 /// The state of one body at one time, widened to quadruple precision.
+struct BodySight {
+  Quat<Quad> q;        ///< as the run has it, not normalised
+  Vec3<Quad> omega{};  ///< 0 where rates are commands and no state
+  double drift = 0;    ///< defect of the constraint; for quaternions signed, q.q - 1
+};
+/// A run at one time.
 struct Sight {
   double t = 0;  ///< [s]
-  Quat<Quad> q;  ///< as the run has it, not normalised
-  Vec3<Quad> omega;
-  double drift = 0;       ///< defect of the constraint; for quaternions signed, q.q - 1
+  std::span<BodySight const> bodies;
   double raw_defect = 0;  ///< the greatest defect of a step before projection, so far
 };
 
@@ -31,24 +35,27 @@ Invariants invariants_of(Mat3<Quad> const& J, Quat<Quad> const& q, Vec3<Quad> co
 /// for noise.
 std::optional<double> growth_exponent(std::vector<double> const& times, std::vector<double> const& drift);
 
-/// Collects the metrics of one run, step by step.
+/// Collects the metrics of one run, step by step. Of many bodies the worst counts.
 class Metrics {
  public:
-  /// torque_free: energy and angular momentum are invariants of this problem.
-  Metrics(UsableReference const& reference, BodyParameters const& body, bool torque_free, double t_end);
+  /// reference null: nothing to hold the run against. free_body: its energy and angular momentum are invariants; null
+  /// if the problem has no such body.
+  Metrics(UsableReference const* reference, BodyParameters const* free_body, double t_end);
   /// At 0 s and after every accepted step, in order of time.
   void see(Sight const& sight);
   /// Writes what was measured into the record.
   void fill(results::Record& record) const;
-  /// At most 64 moments, evenly on log t: t, norm_drift, norm_drift_raw (greatest so far), attitude_error.
+  /// At most 64 moments, evenly on log t: t, norm_drift, norm_drift_raw (greatest so far), and attitude_error if there
+  /// is a reference.
   results::Series drift_series(std::string const& cell) const;
 
  private:
   void compare(Sight const& sight);
+  /// Notes the errors against the reference; the attitude error [rad].
+  double errors_of(Sight const& sight);
 
-  UsableReference const& reference_;
-  Mat3<Quad> inertia_;
-  bool torque_free_;
+  UsableReference const* reference_;
+  std::optional<Mat3<Quad>> inertia_;  ///< of the free body
   double t_end_;
   std::optional<Invariants> start_;
 

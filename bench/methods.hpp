@@ -1,6 +1,7 @@
 #pragma once
 /// The integrators on every space, behind function pointers: the type of a method is forgotten here, once per solve.
 #include <cstdint>
+#include <exception>
 #include <memory>
 #include <variant>
 
@@ -8,6 +9,19 @@
 #include "integrators/catalog.hpp"
 
 namespace polhode::bench {
+
+namespace detail {
+template <class... F>
+Types<RigidBody<typename F::template On<double>>...> one_body(Types<F...>);
+template <class... F>
+Types<Attitudes<typename F::template On<double>>...> attitudes(Types<F...>);
+template <class... F>
+Types<RigidBodies<typename F::template On<double>>...> bodies(Types<F...>);
+}  // namespace detail
+/// The spaces that runs live on: one rigid body, many attitudes, many rigid bodies, in their formulations.
+using OneBodySpaces = decltype(detail::one_body(Formulations{}));
+using AttitudesSpaces = decltype(detail::attitudes(AttitudesFormulations{}));
+using BodiesSpaces = decltype(detail::bodies(BodiesFormulations{}));
 
 /// How a method is driven.
 using Control = std::variant<FixedStep, Adaptive>;
@@ -17,6 +31,7 @@ struct Plan {
   std::vector<Stop> stops;
   Control control;
   NormPolicy policy = NormPolicy::none;
+  bool locate = false;  ///< steps end on the zeros of the problem's switching functions
 
   double h() const { return std::holds_alternative<FixedStep>(control) ? std::get<FixedStep>(control).h : 0; }
 };
@@ -24,9 +39,11 @@ struct Plan {
 /// What a run did.
 struct Outcome {
   Status status = Status::ok;
+  std::exception_ptr ended{};  ///< what a watch threw to end it early; the counts are those so far
   Work work;
   Projections projections;
   std::int64_t evaluations = 0;
+  Located located;
 };
 
 /// Sees every stop and every accepted step of a run on space M. `projections` is what projection has done so far.

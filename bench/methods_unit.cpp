@@ -1,4 +1,5 @@
-/// One list of the catalogue (POLHODE_METHODS: OwnMethods or Rivals), compiled on every space for erased problems.
+/// One list of the catalogue (POLHODE_METHODS: OwnMethods or Rivals), compiled for erased problems on every space of
+/// one kind (POLHODE_SPACES: OneBodySpaces, AttitudesSpaces or BodiesSpaces).
 #include <tuple>
 
 #include "bench/methods.hpp"
@@ -11,8 +12,16 @@ Outcome solve(Erased<M>& problem, Plan const& plan, Watch<M>& watch) {
   return with_stepper(Method{}, problem, plan, [&](auto stepper) {
     Point<M> x = problem.initial();
     Outcome outcome;
-    outcome.status = run_from_stop_to_stop(problem, stepper, x, plan.stops, plan.h(), watch);
+    RunLoop run(problem, stepper, plan.h(), plan.locate);
+    try {
+      outcome.status = run.go(x, plan.stops, watch);
+    } catch (...) {
+      outcome.ended = std::current_exception();
+    }
+    outcome.located = run.located();
     outcome.work = stepper.work();
+    outcome.work.steps -= outcome.located.trials;
+    outcome.work.rejected += outcome.located.trials;
     outcome.projections = stepper.projections();
     outcome.evaluations = problem.evaluations();
     return outcome;
@@ -32,8 +41,11 @@ MethodOn<M> method_on() {
     entry.fixed = entry.adaptive = true;  // asked in either way, it is refused with this reason
   }
   if constexpr (refusal<M>(Method::info.needs).empty() && Method::info.not_built.empty()) {
-    static_assert(IntegratorFor<Method, Erased<M>>, "a method that is not refused must bind");
-    entry.solve = solve<M, Method>;
+    static_assert(IntegratorFor<Method, Erased<M>> || PowerSpace<M>, "a method that is not refused must bind");
+    if constexpr (IntegratorFor<Method, Erased<M>>)
+      entry.solve = solve<M, Method>;
+    else
+      entry.refusal = "is written for one body";
   }
   return entry;
 }
@@ -52,12 +64,12 @@ std::vector<MethodOn<M>> methods_on() {
 
 namespace {
 
-// Their addresses, kept, make every formulation of the catalogue an instance in this unit.
-template <class... F>
-auto instances(Types<F...>) {
-  return std::tuple{&methods_on<RigidBody<typename F::template On<double>>, POLHODE_METHODS>...};
+// Their addresses, kept, make every space of the kind an instance in this unit.
+template <class... M>
+auto instances(Types<M...>) {
+  return std::tuple{&methods_on<M, POLHODE_METHODS>...};
 }
-[[gnu::used]] auto const kept = instances(Formulations{});
+[[gnu::used]] auto const kept = instances(POLHODE_SPACES{});
 
 }  // namespace
 }  // namespace polhode::bench

@@ -29,7 +29,7 @@ void solve_cost(benchmark::State& state, TimedSolve& solve, double steps) {
 void plain_odeint_rk4(benchmark::State& state) {
   using State = std::array<double, 7>;
   auto const chosen = problem_named("free_body").choose({});
-  BodyParameters const& body = chosen->body();
+  BodyParameters const& body = *chosen->body();
   double const Jx = body.inertia[0], Jy = body.inertia[1], Jz = body.inertia[2];
   double const kx = (Jy - Jz) / Jx, ky = (Jz - Jx) / Jy, kz = (Jx - Jy) / Jz;
   auto const field = [=](State const& y, State& dy, double) {
@@ -59,16 +59,22 @@ void plain_odeint_rk4(benchmark::State& state) {
 struct Pair {
   std::string what, ours, rival;
 };
-std::vector<Pair> const pairs{{"RK4 step, free body: polhode / Odeint on std::array", "step/free_body/quaternion/rk4",
-                               "plain/free_body/odeint_rk4"},
-                              {"RK4 step, free body: polhode / Odeint behind our face", "step/free_body/quaternion/rk4",
-                               "step/free_body/quaternion/odeint_rk4"},
-                              {"RK4 step, PD slew: polhode / Odeint behind our face", "step/pd_slew/quaternion/rk4",
-                               "step/pd_slew/quaternion/odeint_rk4"},
-                              {"RK4, tether capture, 2 steps a sample: polhode / Odeint behind our face",
-                               "step/tether_capture/quaternion/rk4", "step/tether_capture/quaternion/odeint_rk4"},
-                              {"DP5 step, free body: polhode / Odeint behind our face",
-                               "step/free_body/quaternion/dopri5", "step/free_body/quaternion/odeint_dopri5"}};
+std::vector<Pair> const pairs{
+    {"RK4 step, free body: polhode / Odeint on std::array", "step/free_body/quaternion/rk4",
+     "plain/free_body/odeint_rk4"},
+    {"RK4 step, free body: polhode / Odeint behind our face", "step/free_body/quaternion/rk4",
+     "step/free_body/quaternion/odeint_rk4"},
+    {"RK4 step, PD slew: polhode / Odeint behind our face", "step/pd_slew/quaternion/rk4",
+     "step/pd_slew/quaternion/odeint_rk4"},
+    {"RK4, tether capture, 2 steps a sample: polhode / Odeint behind our face", "step/tether_capture/quaternion/rk4",
+     "step/tether_capture/quaternion/odeint_rk4"},
+    {"DP5 step, free body: polhode / Odeint behind our face", "step/free_body/quaternion/dopri5",
+     "step/free_body/quaternion/odeint_dopri5"},
+    {"RK4, cost per craft and step: 10^5 craft / 100", "network/quaternion_sync/quaternion/rk4/100000",
+     "network/quaternion_sync/quaternion/rk4/100"},
+    {"CF4 on S3, the same", "network/quaternion_sync/s3/cf4/100000", "network/quaternion_sync/s3/cf4/100"},
+    {"Gauss of 2 stages, the same", "network/quaternion_sync/quaternion/gauss2/100000",
+     "network/quaternion_sync/quaternion/gauss2/100"}};
 
 /// The usual table, and the medians for the ratios.
 class Reporter final : public benchmark::ConsoleReporter {
@@ -84,7 +90,7 @@ class Reporter final : public benchmark::ConsoleReporter {
     for (Pair const& pair : pairs) {
       auto const ours = median_.find(pair.ours), rival = median_.find(pair.rival);
       if (ours == median_.end() || rival == median_.end()) continue;
-      if (first) fmt::print("\nratios of median CPU times in this run (below 1: polhode is faster)\n");
+      if (first) fmt::print("\nratios of median CPU times in this run (below 1: the first is faster)\n");
       first = false;
       fmt::print("{:<75} {:.3f}\n", pair.what, ours->second / rival->second);
     }
@@ -94,18 +100,25 @@ class Reporter final : public benchmark::ConsoleReporter {
   std::map<std::string, double> median_;  ///< seconds per iteration
 };
 
+/// Short steps, so that a solve is a loop over them; those of a sampled problem divide its period.
+double step_of(ProblemEntry const& entry) {
+  bool const sampled = entry.choose({})->sample_period() > 0;
+  return sampled ? entry.info().step : std::min(step_size, entry.info().step);
+}
+
 /// Every typed fixed-step method on every problem and formulation.
 void register_steps(std::vector<std::unique_ptr<TimedSolve>>& keep) {
   for (ProblemEntry const* entry : all_problems())
-    for (std::string_view formulation : formulation_names())
+    for (std::string_view formulation : entry->formulations())
       for (IntegratorWord const& word : vocabulary().integrators) {
         if (!word.fixed || !word.not_built.empty()) continue;
         results::Cell cell;
         cell.problem = entry->info().name;
         cell.formulation = formulation;
         cell.integrator = word.name;
-        cell.h = cell.problem == "tether_capture" ? 0.05 : step_size;
+        cell.h = step_of(*entry);
         PreparedCell const prepared = prepare(cell);
+        if (!prepared.refusal.empty()) continue;
         auto solve = prepared.problem->timed(formulation, word.name, prepared.plan);
         if (!solve) continue;
         double const steps = prepared.cell.t_end / *cell.h;
@@ -115,6 +128,30 @@ void register_steps(std::vector<std::unique_ptr<TimedSolve>>& keep) {
         })->Unit(benchmark::kMicrosecond);
         keep.push_back(std::move(solve));
       }
+}
+
+/// Networks of 100 to 10^5 craft, with so many steps that craft times steps is the same: equal times are equal cost per
+/// craft and step.
+void register_networks(std::vector<std::unique_ptr<TimedSolve>>& keep) {
+  constexpr double craft_times_steps = 1e6, h = 0.1;
+  for (auto const& [formulation, integrator] :
+       {std::pair{"quaternion", "rk4"}, {"s3", "cf4"}, {"quaternion", "gauss2"}})
+    for (int const n : {100, 1000, 10'000, 100'000}) {
+      results::Cell cell;
+      cell.problem = "quaternion_sync";
+      cell.formulation = formulation;
+      cell.integrator = integrator;
+      cell.h = h;
+      cell.t_end = craft_times_steps / n * h;
+      cell.set["n"] = {double(n)};
+      PreparedCell const prepared = prepare(cell);
+      auto solve = prepared.problem->timed(formulation, integrator, prepared.plan);
+      std::string const name = fmt::format("network/quaternion_sync/{}/{}/{}", formulation, integrator, n);
+      benchmark::RegisterBenchmark(name.c_str(), [&solve = *solve](benchmark::State& state) {
+        solve_cost(state, solve, craft_times_steps);
+      })->Unit(benchmark::kMillisecond);
+      keep.push_back(std::move(solve));
+    }
 }
 
 }  // namespace
@@ -136,6 +173,7 @@ int main(int argc, char** argv) {
 
   std::vector<std::unique_ptr<TimedSolve>> keep;
   register_steps(keep);
+  register_networks(keep);
   benchmark::RegisterBenchmark("plain/free_body/odeint_rk4", plain_odeint_rk4)->Unit(benchmark::kMicrosecond);
   Reporter reporter;
   if (benchmark::RunSpecifiedBenchmarks(&reporter) == 0) {

@@ -16,13 +16,26 @@ class Chosen final : public ChosenProblem {
   double horizon() const override { return definition_.horizon; }
   double sample_period() const override { return definition_.sample_period; }
   bool torque_free() const override { return definition_.torque_free(); }
-  BodyParameters const& body() const override { return definition_.body(); }
+  BodyParameters const* body() const override { return body_of(definition_); }
+  bool switches() const override { return polhode::switches(definition_); }
+  bool wants_events() const override { return polhode::wants_events(definition_); }
+  std::string no_reference() const override { return why_no_reference(definition_); }
+  std::string warning() const override { return warning_of(definition_); }
+  std::string refusal(std::string_view formulation) const override {
+    if (!written_in(formulation, FormulationsOf<D>{})) {
+      std::string const why = refusal_of(definition_, formulation);
+      return why.empty() ? "the problem is not written in this formulation" : why;
+    }
+    return refusal_of(definition_, formulation);
+  }
   std::vector<Column> columns() const override { return definition_.columns(); }
   std::vector<ClaimResult> claims(History const& history) const override { return definition_.claims(history); }
 
-  ProblemInFormulation in(std::string_view formulation) const override { return find(formulation, Formulations{}); }
-  std::unique_ptr<Erased<SeriesSpace>> as_series() const override { return erase<Series, FlatQuaternion>(definition_); }
-  std::unique_ptr<Erased<QuadSpace>> in_quad() const override { return erase<Quad, S3>(definition_); }
+  ProblemInFormulation in(std::string_view formulation) const override {
+    return find(formulation, FormulationsOf<D>{});
+  }
+  SeriesProblem as_series() const override { return erase<Series, FlatQuaternion>(definition_); }
+  QuadProblem in_quad() const override { return erase<Quad, S3>(definition_); }
 
   std::unique_ptr<TimedSolve> timed(std::string_view formulation, std::string_view integrator,
                                     Plan const& plan) const override {
@@ -38,6 +51,10 @@ class Chosen final : public ChosenProblem {
     if (!known) throw std::out_of_range("no formulation " + std::string(name));
     return found;
   }
+  template <class... F>
+  static bool written_in(std::string_view name, Types<F...>) {
+    return ((F::name == name) || ...);
+  }
 
   D definition_;
 };
@@ -46,11 +63,16 @@ class Entry final : public ProblemEntry {
  public:
   ProblemInfo const& info() const override { return D::info(); }
   std::vector<Parameter> parameters() const override { return defaults_.parameters(); }
+  std::vector<std::string_view> formulations() const override { return names(FormulationsOf<D>{}); }
   std::unique_ptr<ChosenProblem> choose(Choice const& choice) const override {
     return std::make_unique<Chosen>(choice);
   }
 
  private:
+  template <class... F>
+  static std::vector<std::string_view> names(Types<F...>) {
+    return {F::name...};
+  }
   mutable D defaults_{Choice{}};  // parameters() hands out references; nobody assigns through these
 };
 

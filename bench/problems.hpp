@@ -13,19 +13,26 @@ namespace polhode::bench {
 
 /// Series of the references: enough terms for 33 digits at comfortable steps.
 using Series = Jet<Quad, 32>;
-using SeriesSpace = RigidBody<FlatQuaternion<Series>>;
-using QuadSpace = RigidBody<S3<Quad>>;
 
 namespace detail {
 template <class List>
-struct ProblemIn;
-template <class... F>
-struct ProblemIn<Types<F...>> {
-  using type = std::variant<std::unique_ptr<Erased<RigidBody<typename F::template On<double>>>>...>;
+struct ErasedOn;
+template <class... M>
+struct ErasedOn<Types<M...>> {
+  using type = std::variant<std::unique_ptr<Erased<M>>...>;
 };
+template <class... A, class... B, class... C>
+Types<A..., B..., C...> joined(Types<A...>, Types<B...>, Types<C...>);
+/// One body, many attitudes, many bodies.
+template <class A>
+using Kinds = Types<RigidBody<A>, Attitudes<A>, RigidBodies<A>>;
 }  // namespace detail
-/// A problem in one of the formulations, owned.
-using ProblemInFormulation = detail::ProblemIn<Formulations>::type;
+/// A problem on one of the spaces that runs live on, owned.
+using ProblemInFormulation =
+    detail::ErasedOn<decltype(detail::joined(OneBodySpaces{}, AttitudesSpaces{}, BodiesSpaces{}))>::type;
+/// The same for the two methods of a reference.
+using SeriesProblem = detail::ErasedOn<detail::Kinds<FlatQuaternion<Series>>>::type;
+using QuadProblem = detail::ErasedOn<detail::Kinds<S3<Quad>>>::type;
 
 /// One method bound to one typed problem: what is timed. Everything is made beforehand; solve() starts anew each time.
 class TimedSolve {
@@ -44,14 +51,21 @@ class ChosenProblem {
   virtual double horizon() const = 0;        ///< [s]
   virtual double sample_period() const = 0;  ///< [s]; 0 = continuous
   virtual bool torque_free() const = 0;
-  virtual BodyParameters const& body() const = 0;
+  /// The rigid body; null if the problem is not one.
+  virtual BodyParameters const* body() const = 0;
+  virtual bool switches() const = 0;      ///< the field has kinks or jumps in the state
+  virtual bool wants_events() const = 0;  ///< methods that can are to locate them
+  /// Why there is no reference, what to warn of, why a formulation makes no sense; empty if none of it applies.
+  virtual std::string no_reference() const = 0;
+  virtual std::string warning() const = 0;
+  virtual std::string refusal(std::string_view formulation) const = 0;
   virtual std::vector<Column> columns() const = 0;
   virtual std::vector<ClaimResult> claims(History const& history) const = 0;
-  /// Throws std::out_of_range for an unknown formulation.
+  /// Throws std::out_of_range for a formulation that is unknown or makes no sense.
   virtual ProblemInFormulation in(std::string_view formulation) const = 0;
-  virtual std::unique_ptr<Erased<SeriesSpace>> as_series() const = 0;
-  virtual std::unique_ptr<Erased<QuadSpace>> in_quad() const = 0;
-  /// Null if the integrator is refused on the formulation.
+  virtual SeriesProblem as_series() const = 0;
+  virtual QuadProblem in_quad() const = 0;
+  /// Null if the integrator is refused on the formulation, or the formulation is not timed.
   virtual std::unique_ptr<TimedSolve> timed(std::string_view formulation, std::string_view integrator,
                                             Plan const& plan) const = 0;
 };
@@ -63,6 +77,8 @@ class ProblemEntry {
   virtual ProblemInfo const& info() const = 0;
   /// Name, unit and default of every parameter.
   virtual std::vector<Parameter> parameters() const = 0;
+  /// The formulations that it can be written in.
+  virtual std::vector<std::string_view> formulations() const = 0;
   /// Throws ParameterError if the choice cannot be.
   virtual std::unique_ptr<ChosenProblem> choose(Choice const& choice) const = 0;
 };
@@ -73,6 +89,37 @@ std::vector<ProblemEntry const*> const& all_problems();
 ProblemEntry const& problem_named(std::string_view name);
 /// The names of the formulations, in catalogue order.
 std::vector<std::string_view> formulation_names();
+
+namespace detail {
+template <class D>
+struct FormulationsOf {
+  using type = Formulations;
+};
+template <class D>
+  requires requires {
+    typename D::Formulations;
+  }
+struct FormulationsOf<D> {
+  using type = typename D::Formulations;
+};
+template <class D>
+struct TimedFormulationsOf {
+  using type = TimedFormulations;
+};
+template <class D>
+  requires requires {
+    typename D::TimedFormulations;
+  }
+struct TimedFormulationsOf<D> {
+  using type = typename D::TimedFormulations;
+};
+}  // namespace detail
+/// The formulations that D can be written in: all of one body, unless D says otherwise.
+template <Definition D>
+using FormulationsOf = typename detail::FormulationsOf<D>::type;
+/// Those in which it is timed.
+template <Definition D>
+using TimedFormulationsOf = typename detail::TimedFormulationsOf<D>::type;
 
 /// Each problem's own translation units define these two.
 template <Definition D>

@@ -24,49 +24,139 @@ std::string hexadecimal(Quad x) {
   quadmath_snprintf(text.data(), text.size(), "%.28Qa", x);
   return text.data();
 }
-std::array<Quad, 7> numbers(QuadState const& s) {
-  return {s.q.x, s.q.y, s.q.z, s.q.w, s.omega.x, s.omega.y, s.omega.z};
+/// Components of a state in storage order: attitude and rate of the first body, then of the next.
+std::vector<Quad> numbers(QuadState const& state, bool rates) {
+  std::vector<Quad> all;
+  for (QuadBody const& body : state) {
+    all.insert(all.end(), {body.q.x, body.q.y, body.q.z, body.q.w});
+    if (rates) all.insert(all.end(), {body.omega.x, body.omega.y, body.omega.z});
+  }
+  return all;
 }
+QuadState state_of(std::vector<Quad> const& numbers, bool rates) {
+  QuadState state;
+  for (auto n = numbers.begin(); n != numbers.end(); n += rates ? 7 : 4) {
+    state.push_back({.q = {n[0], n[1], n[2], n[3]}});
+    if (rates) state.back().omega = {n[4], n[5], n[6]};
+  }
+  return state;
+}
+template <Space M>
+constexpr bool has_rates_on = true;
+template <class A, int n>
+constexpr bool has_rates_on<Power<A, n>> = requires(typename A::Point x) {
+  x.second;
+};
+
+/// The Taylor series of one problem, from segment to segment.
+template <Space M>
+class Expansion {
+ public:
+  Expansion(Erased<M>& field, std::string const& name, double t_end) : field_(field), name_(name), t_end_(t_end) {
+    std::vector<Series> start(std::size_t(size_of(field.initial())));
+    store(field.initial(), start.data());
+    for (Series const& component : start) state_.push_back(component[0]);
+    values_.resize(std::size_t(field.state_events()));
+  }
+  std::vector<Quad> const& state() const { return state_; }
+
+  void at_stop(Stop const& stop) {
+    std::vector<Series> const constants(state_.begin(), state_.end());
+    Quad const t(stop.time);
+    if (stop.sample) field_.sample(t, point(constants));
+    if (stop.jump) field_.enter_phase(t);
+    if (values_.empty() || !(stop.time == 0 || stop.sample || stop.jump)) return;
+    field_.take_sides(t, point(constants));
+    field_.event_values(Series(t), point(constants), std::span(values_));
+    sides_.clear();
+    for (Series const& value : values_) sides_.push_back(sign_of(value[0]));
+  }
+  /// The next segment from t, at most to `next`: shorter where the series or a side of the field ends; t moves.
+  TaylorSegment<Quad, 32> segment(Quad& t, Quad const& next, std::vector<double>& event_times) {
+    auto segment = expand<Quad, 32>(field_, state_, t, Quad(next - t), tolerance);
+    bool const useful = segment.h > 1e-9 * t_end_ || segment.h >= next - t;
+    if (!useful)
+      throw ReferenceError(
+          fmt::format("{}: the Taylor series has no useful radius of convergence at t = {} s", name_, double(t)));
+    bool const arrived = segment.h >= next - t;
+    std::vector<int> const crossed = first_events(segment);
+    for (std::size_t i = 0; i < state_.size(); ++i) state_[i] = segment.component[i].at(segment.h);
+    t = arrived && crossed.empty() ? next : t + segment.h;
+    for (int const k : crossed) {
+      field_.cross(k);
+      sides_[std::size_t(k)] = -sides_[std::size_t(k)];
+      event_times.push_back(double(t));
+    }
+    return segment;
+  }
+
+ private:
+  Point<M> point(std::vector<Series> const& components) const {
+    Point<M> x = field_.initial();
+    load(x, components.data());
+    return x;
+  }
+  /// The functions that change sides first within the segment, which is cut off there.
+  std::vector<int> first_events(TaylorSegment<Quad, 32>& segment) {
+    if (values_.empty()) return {};
+    Series time(segment.t);
+    time.degree = segment.component.front().degree;
+    time[1] = Quad(1.0);
+    field_.event_values(time, point(segment.component), std::span(values_));
+    constexpr int pieces = 32;
+    Quad first = segment.h;
+    std::vector<int> crossed;
+    for (std::size_t k = 0; k < values_.size(); ++k) {
+      auto const value = [&](Quad const& s) { return Quad(sides_[k] * values_[k].at(s)); };
+      for (int i = 1; i <= pieces; ++i) {
+        Quad const a = segment.h * (i - 1) / pieces, b = segment.h * i / pieces;
+        Quad const fb = value(b);
+        if (!(fb < 0)) continue;
+        Quad const zero = zero_between(a, b, value(a), fb, Quad(1e-33) * max_of(segment.t, segment.h), value);
+        constexpr double together = 1e-25;  // [s]
+        if (zero < first - together) crossed.clear();
+        if (zero < first + together) crossed.push_back(int(k));
+        first = zero < first ? zero : first;
+        break;
+      }
+    }
+    segment.h = first;
+    return crossed;
+  }
+
+  Erased<M>& field_;
+  std::string name_;
+  double t_end_;
+  std::vector<Quad> state_;
+  std::vector<Series> values_;  ///< of the switching functions
+  std::vector<Quad> sides_;     ///< the signs that they have now
+};
 
 }  // namespace
 
 Reference Reference::solve(ChosenProblem const& problem, Schedule const& schedule) {
   std::vector<Stop> const stops = stops_of(schedule);
-  auto const field = problem.as_series();
-  std::vector<Series> start(7);
-  store(field->initial(), start.data());
-  std::vector<Quad> state;
-  for (Series const& component : start) state.push_back(component[0]);
-
   Reference reference;
   reference.t_end_ = schedule.t_end;
-  auto const note_rate = [&] {
-    Vec3<Quad> const omega{state[4], state[5], state[6]};
-    reference.largest_rate_ = std::max(reference.largest_rate_, double(length(omega)));
-  };
-  note_rate();
-  for (std::size_t k = 0; k + 1 < stops.size(); ++k) {
-    Quad t = stops[k].time;
-    Quad const next = stops[k + 1].time;
-    if (stops[k].sample) {
-      std::vector<Series> const constants(state.begin(), state.end());
-      Point<SeriesSpace> x;
-      load(x, constants.data());
-      field->sample(t, x);
-    }
-    if (stops[k].jump) field->enter_phase(t);
-    while (t < next) {
-      auto segment = expand<Quad, 32>(*field, state, t, Quad(next - t), tolerance);
-      if (!(segment.h > 1e-9 * schedule.t_end) && !(segment.h >= next - t))
-        throw ReferenceError(fmt::format("{}: the Taylor series has no useful radius of convergence at t = {} s",
-                                         problem.info().name, double(t)));
-      for (std::size_t i = 0; i < state.size(); ++i) state[i] = segment.component[i].at(segment.h);
-      bool const arrived = segment.h >= next - t;
-      t = arrived ? next : t + segment.h;
-      reference.segments_.push_back(std::move(segment));
-      note_rate();
-    }
-  }
+  SeriesProblem const in_series = problem.as_series();
+  std::visit(
+      [&]<Space M>(std::unique_ptr<Erased<M>> const& field) {
+        reference.has_rates_ = has_rates_on<M>;
+        Expansion<M> expansion(*field, problem.info().name, schedule.t_end);
+        auto const note_rate = [&] {
+          for (QuadBody const& body : state_of(expansion.state(), reference.has_rates_))
+            reference.largest_rate_ = std::max(reference.largest_rate_, double(length(body.omega)));
+        };
+        note_rate();
+        for (std::size_t k = 0; k + 1 < stops.size(); ++k) {
+          expansion.at_stop(stops[k]);
+          for (Quad t = stops[k].time; t < Quad(stops[k + 1].time);) {
+            reference.segments_.push_back(expansion.segment(t, stops[k + 1].time, reference.event_times_));
+            note_rate();
+          }
+        }
+      },
+      in_series);
   return reference;
 }
 
@@ -74,31 +164,48 @@ QuadState Reference::at(double t) const {
   auto const after = std::upper_bound(segments_.begin(), segments_.end(), Quad(t),
                                       [](Quad time, auto const& segment) { return time < segment.t; });
   auto const& segment = after == segments_.begin() ? *after : *(after - 1);
-  Quad const s = Quad(t) - segment.t;
-  auto const value = [&](std::size_t i) { return segment.component[i].at(s); };
-  return {{value(0), value(1), value(2), value(3)}, {value(4), value(5), value(6)}};
+  std::vector<Quad> values;
+  for (auto const& component : segment.component) values.push_back(component.at(Quad(t) - segment.t));
+  return state_of(values, has_rates_);
 }
 
 double angle_between(QuadState const& a, QuadState const& b) {
-  return double(polhode::angle_between(a.q, b.q));
+  double most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, double(polhode::angle_between(a[i].q, b[i].q)));
+  return most;
 }
+
+namespace {
+
+/// Keeps the states at stops.
+template <Space M>
+struct KeepStops {
+  static constexpr bool each_step = false;
+  std::vector<QuadState>& states;
+
+  void at_stop(Stop const&, Point<M> const& x) {
+    std::vector<Quad> values(std::size_t(size_of(x)));
+    store(x, values.data());
+    states.push_back(state_of(values, has_rates_on<M>));
+  }
+};
+
+}  // namespace
 
 std::vector<QuadState> solve_by_gauss(ChosenProblem const& problem, Schedule const& schedule, int divisions) {
   std::vector<Stop> const stops = stops_of(schedule);
-  auto const field = problem.in_quad();
-  auto stepper = Gauss<8>{}.bind(*field, FixedStep{(stops[1].time - stops[0].time) / divisions}, NormPolicy::none);
-  Point<QuadSpace> x = field->initial();
+  double const h = (stops[1].time - stops[0].time) / divisions;
   std::vector<QuadState> states;
-  for (std::size_t k = 0; k < stops.size(); ++k) {
-    if (stops[k].sample) field->sample(stops[k].time, x);
-    if (stops[k].jump) field->enter_phase(stops[k].time);
-    if (stops[k].sample || stops[k].jump) stepper.restart();
-    states.push_back({x.first, x.second});
-    if (k + 1 == stops.size()) break;
-    if (stepper.advance(x, stops[k].time, stops[k + 1].time) != Status::ok)
-      throw ReferenceError(
-          fmt::format("{}: Gauss in quadruple precision diverged after t = {} s", problem.info().name, stops[k].time));
-  }
+  QuadProblem const in_quad = problem.in_quad();
+  std::visit(
+      [&]<Space M>(std::unique_ptr<Erased<M>> const& field) {
+        auto stepper = Gauss<8>{}.bind(*field, FixedStep{h}, NormPolicy::none);
+        Point<M> x = field->initial();
+        if (RunLoop(*field, stepper, h, true).go(x, stops, KeepStops<M>{states}) != Status::ok)
+          throw ReferenceError(fmt::format("{}: Gauss in quadruple precision diverged after t = {} s",
+                                           problem.info().name, stops[states.size() - 1].time));
+      },
+      in_quad);
   return states;
 }
 
@@ -118,10 +225,10 @@ namespace {
 /// The closed form of a free body in principal axes; null for any other problem, and for initial data or signs that
 /// belong to no physical body.
 std::optional<ExactFreeBody<Quad>> closed_form_of(ChosenProblem const& problem) {
-  BodyParameters const& body = problem.body();
-  if (!problem.torque_free() || !body.principal() || body.coriolis_sign != 1 || body.raw_q0) return {};
-  Vec3<Quad> const moments{body.inertia[0], body.inertia[1], body.inertia[2]};
-  return ExactFreeBody<Quad>(moments, body.attitude<Quad>(), body.rate<Quad>());
+  BodyParameters const* body = problem.body();
+  if (!body || !problem.torque_free() || !body->principal() || body->coriolis_sign != 1 || body->raw_q0) return {};
+  Vec3<Quad> const moments{body->inertia[0], body->inertia[1], body->inertia[2]};
+  return ExactFreeBody<Quad>(moments, body->attitude<Quad>(), body->rate<Quad>());
 }
 
 }  // namespace
@@ -153,6 +260,7 @@ double largest_angle(std::vector<QuadState> const& a, std::vector<QuadState> con
 Certificate certify(results::Cell const& cell, ChosenProblem const& problem, Schedule const& schedule,
                     Reference const& reference) {
   Certificate certificate{.id = reference_id(cell), .subject = reference_subject(cell)};
+  certificate.has_rates = reference.has_rates();
   Schedule watched = schedule;
   if (!(watched.sample_period > 0)) watched.output_period = schedule.t_end / 100;
   std::vector<Stop> const stops = stops_of(watched);
@@ -167,7 +275,7 @@ Certificate certify(results::Cell const& cell, ChosenProblem const& problem, Sch
     fine = try_gauss(problem, watched, 2 * divisions);
   }
   if (fine.empty() || coarse.empty())
-    throw ReferenceError(
+    throw Uncertified(
         fmt::format("{}: Gauss in quadruple precision diverges at every step size tried; the problem is "
                     "too stiff for a certified reference",
                     problem.info().name));
@@ -185,7 +293,7 @@ Certificate certify(results::Cell const& cell, ChosenProblem const& problem, Sch
     double worst = 0;
     for (std::size_t k = 0; k < certificate.times.size(); ++k) {
       Quat<Quad> const q = exact->at(certificate.times[k]).first;
-      worst = std::max(worst, double(polhode::angle_between(certificate.states[k].q, q)));
+      worst = std::max(worst, double(polhode::angle_between(certificate.states[k][0].q, q)));
     }
     certificate.closed_form = worst;
     certificate.bar = std::max(certificate.bar, worst);
@@ -195,7 +303,14 @@ Certificate certify(results::Cell const& cell, ChosenProblem const& problem, Sch
 
 namespace {
 
-constexpr std::array names{"q1", "q2", "q3", "q4", "wx", "wy", "wz"};
+/// Names of the components of a state.
+std::vector<std::string> names_of(QuadState const& state, bool rates) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < state.size(); ++i)
+    for (char const* name : {"q1", "q2", "q3", "q4", "wx", "wy", "wz"})
+      if (rates || name[0] == 'q') names.push_back(state.size() > 1 ? fmt::format("b{}.{}", i + 1, name) : name);
+  return names;
+}
 
 nlohmann::ordered_json contents_of(Certificate const& c) {
   std::vector<std::string> methods{"Taylor, degree 32, float128, flat quaternion", "Gauss, 8 stages, float128, S3"};
@@ -213,10 +328,10 @@ nlohmann::ordered_json contents_of(Certificate const& c) {
                               {"disagreement_rad", c.disagreement},
                               {"halving_rad", c.halving},
                               {"closed_form_rad", closed_form},
-                              {"columns", names}};
+                              {"columns", names_of(c.states.at(0), c.has_rates)}};
   for (std::size_t k = 0; k < c.times.size(); ++k) {
     nlohmann::ordered_json row{{"t", c.times[k]}};
-    for (Quad x : numbers(c.states[k])) {
+    for (Quad x : numbers(c.states[k], c.has_rates)) {
       row["decimal"].push_back(decimal(x));
       row["hex"].push_back(hexadecimal(x));
     }
@@ -257,12 +372,14 @@ Certificate load(std::filesystem::path const& file) {
     // Absent in certificates made before the closed form was a witness.
     if (auto const closed_form = json.find("closed_form_rad"); closed_form != json.end() && !closed_form->is_null())
       c.closed_form = closed_form->get<double>();
+    std::vector<std::string> const columns = json.at("columns");
+    c.has_rates = columns.back().ends_with("wz");
     for (auto const& row : json.at("states")) {
-      std::array<Quad, 7> x{};
-      for (std::size_t i = 0; i < x.size(); ++i)
-        x[i] = strtoflt128(row.at("hex").at(i).get<std::string>().c_str(), nullptr);
+      std::vector<Quad> x;
+      for (std::size_t i = 0; i < columns.size(); ++i)
+        x.push_back(strtoflt128(row.at("hex").at(i).get<std::string>().c_str(), nullptr));
       c.times.push_back(row.at("t"));
-      c.states.push_back({{x[0], x[1], x[2], x[3]}, {x[4], x[5], x[6]}});
+      c.states.push_back(state_of(x, c.has_rates));
     }
     return c;
   } catch (nlohmann::json::exception const& error) {

@@ -96,7 +96,7 @@ std::size_t skip_finished(std::vector<Task>& tasks, std::filesystem::path const&
 results::Series history_series(Task const& task) {
   History const& history = task.measured.history;
   results::Series series{.cell = task.id, .name = "history", .columns = {"t"}, .units = {"s"}, .rows = {}};
-  for (Column const& column : columns_of(*task.prepared.problem)) {
+  for (Column const& column : task.measured.columns) {
     series.columns.push_back(column.name);
     series.units.push_back(column.unit);
   }
@@ -229,7 +229,20 @@ void say_what_would_run(std::vector<Task> const& tasks, Timing const& timing, Ru
   fmt::print("{} cells, about {} min {} s\n", tasks.size(), seconds / 60, seconds % 60);
 }
 
+/// What users should know of their choices, each once.
+std::set<std::string> warnings_of(std::vector<Task> const& tasks) {
+  std::set<std::string> warnings;
+  for (Task const& task : tasks)
+    if (std::string const warning = task.prepared.problem->warning(); !warning.empty())
+      warnings.insert(task.prepared.cell.problem + ": " + warning);
+  return warnings;
+}
+
 }  // namespace
+
+void warn(std::string const& warning) {
+  if (!warning.empty()) std::fputs(fmt::format("polhode: warning: {}\n", warning).c_str(), stderr);
+}
 
 void interruptible() {
   auto const note = [](int) { interrupted = true; };
@@ -274,6 +287,11 @@ RunSummary run_suite(Suite const& suite, RunOptions const& options) {
   summary.skipped = skip_finished(tasks, summary.out, options.retry_failed);
   if (tasks.empty()) return summary;
   std::ofstream(summary.out / "suite.toml") << suite.text;
+  for (std::filesystem::path const& file : suite.files) {
+    std::filesystem::path const copy = summary.out / file.filename();
+    if (!std::filesystem::exists(copy) || !std::filesystem::equivalent(file, copy))
+      std::filesystem::copy_file(file, copy, std::filesystem::copy_options::overwrite_existing);
+  }
 
   results::Meta meta = provenance();
   meta["suite"] = suite.name;
@@ -288,6 +306,7 @@ RunSummary run_suite(Suite const& suite, RunOptions const& options) {
     if (!groups.contains(subject)) order.push_back(subject);
     groups[subject].push_back(&task);
   }
+  for (std::string const& warning : warnings_of(tasks)) warn(warning);
   References references(references_folder());
   Progress progress(tasks.size() * (suite.timing.enabled ? 2 : 1));
   for (std::string const& subject : order) {

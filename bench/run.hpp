@@ -40,6 +40,8 @@ std::filesystem::path suite_file(std::string const& name_or_file);
 /// Throws SuiteError, UsageError (bad filter), NothingSelected, results::StoreError, ReferenceError.
 RunSummary run_suite(Suite const& suite, RunOptions const& options);
 
+/// Tells the user on stderr; nothing if there is nothing to tell.
+void warn(std::string const& warning);
 /// From now on SIGINT and SIGTERM end a run between cells.
 void interruptible();
 

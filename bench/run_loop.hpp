@@ -1,9 +1,11 @@
 #pragma once
-/// The run loop: from event to event. Events are the samples of a digital controller, announced jumps of the field, and
-/// output times; they are stops: every method lands on them. Between stops a method is on its own.
+/// The run loop: from event to event. The samples of a digital controller, announced jumps of the field and output
+/// times are stops: every method lands on them. Between stops a method is on its own, except where the field switches
+/// with the state and the method can be told where, and where points are replaced by equivalent ones.
+#include <optional>
 #include <vector>
 
-#include "integrators/integrator.hpp"
+#include "integrators/events.hpp"
 
 namespace polhode::bench {
 
@@ -33,46 +35,116 @@ struct NoWatch {
   void at_stop(Stop const&, X const&) {}
 };
 
-/// Runs `stepper` on `problem` from the first stop to the last. watch.at_stop(stop, x) is called at each stop after its
-/// sample was taken; if Watch::each_step, watch.after_step(t, x, projections) is called after every accepted step.
-/// Returns the first status that is not ok; x is then the last state that was reached.
-/// h [s] is the step of a fixed-step method, and 0 for methods that choose their own.
-template <class P, class Stepper, class M = typename P::Space, class Watch>
-Status run_from_stop_to_stop(P& problem, Stepper& stepper, Point<M>& x, std::vector<Stop> const& stops, double h,
-                             Watch&& watch) {
-  for (std::size_t k = 0; k < stops.size(); ++k) {
-    Stop const& here = stops[k];
-    if constexpr (requires { problem.sample(here.time, x); })
-      if (here.sample) problem.sample(here.time, x);
-    if constexpr (requires { problem.enter_phase(here.time); })
-      if (here.jump) problem.enter_phase(here.time);
-    if (here.sample || here.jump) stepper.restart();
-    watch.at_stop(here, x);
-    if (k + 1 == stops.size()) break;
+/// What the run loop did to find events.
+struct Located {
+  std::int64_t events = 0;      ///< crossings of switching functions that steps ended on
+  std::int64_t trials = 0;      ///< steps taken and given up to find them
+  std::vector<double> times{};  ///< of the first 256 [s]
+};
 
-    double const next = stops[k + 1].time;
-    Status status = Status::ok;
-    if constexpr (!std::decay_t<Watch>::each_step) {
-      status = stepper.advance(x, here.time, next);
-    } else if constexpr (requires(double t) { stepper.step(x, t, next); }) {
-      for (double t = here.time; t < next && status == Status::ok;) {
-        status = stepper.step(x, t, next);
-        if (status == Status::ok) watch.after_step(t, x, stepper.projections());
-      }
-    } else {
-      // The same steps as one advance would take, one at a time.
-      double t = here.time;
-      for (std::int64_t i = 1; t < next && status == Status::ok; ++i) {
-        double const ahead = here.time + double(i) * h;
-        double const t_next = ahead > next - 1e-9 * h ? next : ahead;
-        status = stepper.advance(x, t, t_next);
-        t = t_next;
-        if (status == Status::ok) watch.after_step(t, x, stepper.projections());
-      }
-    }
-    if (status != Status::ok) return status;
+/// One run of `stepper` on `problem` from stop to stop.
+///   h       [s] the step of a fixed-step method, 0 for methods that choose their own
+///   locate  find the zeros of the problem's switching functions, and have steps end there
+template <class P, class Stepper>
+class RunLoop {
+  using M = typename P::Space;
+  using R = Real<typename M::Scalar>;
+  static constexpr bool chooses_steps = requires(Stepper s, Point<M> x, R t) { s.step(x, t, t); };
+  static constexpr bool finds_roots = requires(Stepper s) { s.find_roots(); };
+
+ public:
+  RunLoop(P& problem, Stepper& stepper, double h, bool locate) : problem_(problem), stepper_(stepper), h_(h) {
+    if constexpr (SwitchingProblem<P>)
+      if (locate && problem.state_events() > 0) locator_.emplace(problem, problem.initial());
+    if constexpr (finds_roots)
+      if (locator_) stepper.find_roots();
   }
-  return Status::ok;
-}
+
+  /// watch.at_stop(stop, x) is called at each stop after its sample was taken; if Watch::each_step,
+  /// watch.after_step(t, x, projections) is called after every accepted step. Returns the first status that is not ok;
+  /// x is then the last state that was reached.
+  template <class Watch>
+  Status go(Point<M>& x, std::vector<Stop> const& stops, Watch&& watch) {
+    for (std::size_t k = 0; k < stops.size(); ++k) {
+      Stop const& here = stops[k];
+      R const now(here.time);
+      if constexpr (requires { problem_.sample(now, x); })
+        if (here.sample) problem_.sample(now, x);
+      if constexpr (requires { problem_.enter_phase(now); })
+        if (here.jump) problem_.enter_phase(now);
+      if (here.sample || here.jump) stepper_.restart();
+      if constexpr (requires { stepper_.set_horizon(now, now); })
+        if (k == 0 || here.sample || here.jump) stepper_.set_horizon(now, R(arc_end(stops, k)));
+      if (locator_ && (k == 0 || here.sample || here.jump)) take_sides(now, x);
+      watch.at_stop(here, x);
+      if (k + 1 == stops.size()) break;
+      if (Status const status = between(x, now, R(stops[k + 1].time), watch); status != Status::ok) return status;
+    }
+    return Status::ok;
+  }
+  Located located() const {
+    return locator_ ? Located{locator_->found(), locator_->trials(), locator_->times()} : Located{};
+  }
+
+ private:
+  /// Where the smooth arc that begins at stop k ends [s].
+  static double arc_end(std::vector<Stop> const& stops, std::size_t k) {
+    for (++k; k + 1 < stops.size(); ++k)
+      if (stops[k].sample || stops[k].jump) break;
+    return stops[std::min(k, stops.size() - 1)].time;
+  }
+  template <class Watch>
+  Status between(Point<M>& x, R const& from, R const& to, Watch&& watch) {
+    if constexpr (!std::decay_t<Watch>::each_step && !Settling<M>)
+      if (!locator_) return stepper_.advance(x, from, to);
+    R t = from;
+    bool on_grid = true;
+    for (std::int64_t i = 1; t < to;) {
+      if (locator_ && !finds_roots) locator_->before_step(t, x);
+      if constexpr (chooses_steps) {
+        if (Status const status = stepper_.step(x, t, to); status != Status::ok) return status;
+      } else {
+        // The same steps as one advance would take, one at a time; after an event, the rest of the step it was in.
+        R const ahead = from + R(double(i) * h_), next = ahead > to - R(1e-9 * h_) ? to : ahead;
+        Status const status = on_grid ? stepper_.advance(x, t, next) : advance_exactly(stepper_, x, t, next);
+        if (status != Status::ok) return status;
+        t = next;
+      }
+      bool crossed = false;
+      if (locator_)
+        if (Status const status = locate(t, x, crossed); status != Status::ok) return status;
+      if (!crossed) ++i;
+      on_grid = !crossed;
+      if constexpr (std::decay_t<Watch>::each_step) watch.after_step(t, x, stepper_.projections());
+      if constexpr (Singular<M> && std::decay_t<Watch>::each_step)
+        if (M::singular(x)) return Status::diverged;
+      if constexpr (Settling<M>)
+        if (M::settle(x)) {
+          stepper_.restart();
+          if (locator_) take_sides(t, x);
+        }
+    }
+    return Status::ok;
+  }
+  Status locate(R& t, Point<M>& x, bool& crossed) {
+    if constexpr (!SwitchingProblem<P>) return Status::ok;
+    if constexpr (SwitchingProblem<P> && finds_roots) {
+      for (int const k : stepper_.roots()) locator_->cross(problem_, t, k);
+      crossed = !stepper_.roots().empty();
+      if (crossed) stepper_.restart();
+      return Status::ok;
+    } else if constexpr (SwitchingProblem<P>) {
+      return locator_->after_step(problem_, stepper_, t, x, crossed);
+    }
+  }
+  void take_sides([[maybe_unused]] R const& t, [[maybe_unused]] Point<M> const& x) {
+    if constexpr (SwitchingProblem<P>) locator_->take_sides(problem_, t, x);
+  }
+
+  P& problem_;
+  Stepper& stepper_;
+  double h_;
+  std::optional<EventLocator<M>> locator_;
+};
 
 }  // namespace polhode::bench

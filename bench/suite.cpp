@@ -11,6 +11,7 @@
 
 #include "bench/suite_select.hpp"
 #include "bench/suite_toml.hpp"
+#include "problems/graph.hpp"
 
 namespace polhode::bench {
 namespace {
@@ -241,7 +242,22 @@ Words read_words(Toml const& sweep, std::string const& key, Words const& otherwi
   return words;
 }
 
-std::vector<decltype(Cell::set)> read_sets(Toml const& sweep, ProblemWord const& problem) {
+/// The links in a file that the suite names: by its path, from the suite's folder, or beside the suite, where `run`
+/// puts a copy. The record holds the numbers.
+std::vector<double> read_graph_beside(Toml const& name, std::vector<std::filesystem::path>& files) {
+  std::filesystem::path const written = name.as_string().str;
+  std::filesystem::path const folder = std::filesystem::path(name.location().file_name()).parent_path();
+  std::filesystem::path const beside = folder / written.filename();
+  files.push_back(std::filesystem::exists(folder / written) ? folder / written : beside);
+  try {
+    return read_graph(files.back().string());
+  } catch (ParameterError const& error) {
+    fail(name, error.what());
+  }
+}
+
+std::vector<decltype(Cell::set)> read_sets(Toml const& sweep, ProblemWord const& problem,
+                                           std::vector<std::filesystem::path>& files) {
   auto const* axis = find(sweep, "set");
   if (!axis) return {{}};
   std::vector<decltype(Cell::set)> sets;
@@ -250,6 +266,10 @@ std::vector<decltype(Cell::set)> read_sets(Toml const& sweep, ProblemWord const&
     auto& set = sets.emplace_back();
     for (auto const& [name, value] : item->as_table()) {
       located(value, [&] { check_parameter(problem, name, {0}); });
+      if (name == "graph" && value.is_string()) {
+        set[name] = read_graph_beside(value, files);
+        continue;
+      }
       for (auto const* entry : items(value, name)) set[name].push_back(number(*entry, name));
     }
   }
@@ -267,7 +287,8 @@ std::vector<std::int64_t> read_seeds(Toml const& sweep) {
 }
 
 /// The cells of one sweep, in the order of its axes.
-std::vector<Cell> read_sweep(Toml const& sweep, Vocabulary const& vocabulary) {
+std::vector<Cell> read_sweep(Toml const& sweep, Vocabulary const& vocabulary,
+                             std::vector<std::filesystem::path>& files) {
   table(sweep, "[[sweep]]",
         {"problem", "variant", "formulation", "integrator", "policy", "h", "rtol", "atol", "t_end", "set", "seed",
          "tags"});
@@ -306,7 +327,7 @@ std::vector<Cell> read_sweep(Toml const& sweep, Vocabulary const& vocabulary) {
     cells = cross(sweep, cells, methods, use);
     cells = cross(sweep, cells, policies, assign(&Cell::policy));
     cells = cross(sweep, cells, horizons, assign(&Cell::t_end));
-    cells = cross(sweep, cells, read_sets(sweep, problem), assign(&Cell::set));
+    cells = cross(sweep, cells, read_sets(sweep, problem, files), assign(&Cell::set));
     cells = cross(sweep, cells, seeds, assign(&Cell::seed));
     check_size(sweep, all.size() + cells.size());
     std::move(cells.begin(), cells.end(), std::back_inserter(all));
@@ -327,14 +348,15 @@ std::vector<Toml const*> tables(Toml const& root, std::string const& key) {
 }
 
 /// The cells of all sweeps; one that several sweeps make is listed once, with the tags of all of them.
-std::vector<SuiteCell> read_sweeps(Toml const& root, Vocabulary const& vocabulary) {
+std::vector<SuiteCell> read_sweeps(Toml const& root, Vocabulary const& vocabulary,
+                                   std::vector<std::filesystem::path>& files) {
   auto const sweeps = tables(root, "sweep");
   if (sweeps.empty()) fail(root, "no [[sweep]]; a suite has at least one");
   std::vector<SuiteCell> all;
   std::unordered_map<std::string, std::size_t> places;
   std::size_t drawn = 0;
   for (auto const* sweep : sweeps) {
-    auto cells = read_sweep(*sweep, vocabulary);
+    auto cells = read_sweep(*sweep, vocabulary, files);
     auto const tags = read_words(*sweep, "tags", {}, [](auto const& tag) {
       if (tag.empty()) throw UsageError("tags: a tag must not be empty");
       return tag;
@@ -380,7 +402,7 @@ Suite read_suite(std::filesystem::path const& file, Vocabulary const& vocabulary
   suite.name = text(name, "name");
   if (suite.name.empty()) fail(name, "name: empty; give e.g. name = \"mine\"");
   suite.timing = read_timing(root);
-  suite.cells = read_sweeps(root, vocabulary);
+  suite.cells = read_sweeps(root, vocabulary, suite.files);
 
   auto const words = selectable_words(vocabulary, suite);
   std::vector<Selector> excluded;

@@ -54,6 +54,7 @@ struct Expectation {
 struct Suite {
   std::string name;
   std::string text;  ///< the file as read: copied into the result folder, hashed into the provenance
+  std::vector<std::filesystem::path> files{};  ///< that it was read with: graphs; copied, too
   Timing timing;
   std::vector<SuiteCell> cells;  ///< in file order, without duplicates
   std::vector<Expectation> expectations;

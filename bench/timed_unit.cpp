@@ -1,6 +1,6 @@
 /// The timed solves of one problem (POLHODE_PROBLEM) by one list of methods (POLHODE_METHODS), fully typed: what a user
-/// who compiled this method against this problem would run. An inertia with products of inertia is not timed: its field
-/// is compiled for erased, counted runs alone.
+/// who compiled this method against this problem would run. An inertia with products of inertia is not timed, nor are
+/// foils among the formulations: they are compiled for erased, counted runs alone.
 #include "bench/problems.hpp"
 
 namespace polhode::bench {
@@ -16,19 +16,25 @@ class Solve final : public TimedSolve {
  public:
   template <class Bind>
   Solve(P const& problem, Plan const& plan, Bind bind)
-      : fresh_(problem), problem_(problem), stepper_(bind(problem_)), stops_(plan.stops), h_(plan.h()) {}
+      : fresh_(problem),
+        problem_(problem),
+        stepper_(bind(problem_)),
+        run_(problem_, stepper_, plan.h(), plan.locate),
+        stops_(plan.stops),
+        start_(problem_.initial()),
+        state_(start_) {}
 
   Status solve() override {
     problem_ = fresh_;  // a controller remembers its last sample
-    state_ = problem_.initial();
+    state_ = start_;
     if constexpr (requires { stepper_.begin(); })
       stepper_.begin();
     else
       stepper_.restart();
-    return run_from_stop_to_stop(problem_, stepper_, state_, stops_, h_, NoWatch{});
+    return run_.go(state_, stops_, NoWatch{});
   }
   std::vector<double> end_state() const override {
-    std::vector<double> numbers(std::size_t(Point<M>::size));
+    std::vector<double> numbers(std::size_t(size_of(state_)));
     store(state_, numbers.data());
     return numbers;
   }
@@ -37,9 +43,10 @@ class Solve final : public TimedSolve {
   P const fresh_;
   P problem_;
   Stepper stepper_;
+  RunLoop<P, Stepper> run_;
   std::vector<Stop> stops_;
-  double h_;
-  Point<M> state_{};
+  Point<M> const start_;
+  Point<M> state_;
 };
 
 template <class Control, class Method, class P>
@@ -50,11 +57,10 @@ std::unique_ptr<TimedSolve> make(P const& problem, Plan const& plan) {
 
 template <class F, class Method>
 std::unique_ptr<TimedSolve> timed_on(D const& definition, Plan const& plan) {
-  using M = RigidBody<typename F::template On<double>>;
-  if constexpr (refusal<M>(Method::info.needs).empty() && Method::info.not_built.empty()) {
-    if (!definition.principal()) return nullptr;
-    auto const problem = definition.template field<double, F::template On, true>();
-    using P = std::decay_t<decltype(problem)>;
+  using P = decltype(definition.template field<double, F::template On, true>());
+  if constexpr (refusal<typename P::Space>(Method::info.needs).empty() && Method::info.not_built.empty()) {
+    if (!is_principal(definition)) return nullptr;
+    P const problem = definition.template field<double, F::template On, true>();
     if constexpr (RunsFixed<Method, P>)
       if (std::holds_alternative<FixedStep>(plan.control)) return make<FixedStep, Method>(problem, plan);
     if constexpr (RunsAdaptive<Method, P>)
@@ -83,7 +89,7 @@ std::unique_ptr<TimedSolve> find(D const& definition, std::string_view formulati
 template <>
 std::unique_ptr<TimedSolve> timed_solve<D, Methods>(D const& definition, std::string_view formulation,
                                                     std::string_view integrator, Plan const& plan) {
-  return find(definition, formulation, integrator, plan, Formulations{});
+  return find(definition, formulation, integrator, plan, TimedFormulationsOf<D>{});
 }
 
 }  // namespace polhode::bench

@@ -28,6 +28,7 @@ struct ProblemWord {
   std::vector<std::string> formulations;
   std::vector<ParameterWord> parameters;
   std::vector<std::string> events, claims;
+  double step = 0.1;  ///< [s] at which every fixed-step method is stable on the default choice
 };
 
 struct IntegratorWord {

@@ -27,8 +27,9 @@ ProblemWord problem_word(ProblemEntry const& entry) {
                    .formulations = {},
                    .parameters = {},
                    .events = info.events,
-                   .claims = {}};
-  for (std::string_view name : formulation_names()) word.formulations.emplace_back(name);
+                   .claims = {},
+                   .step = info.step};
+  for (std::string_view name : entry.formulations()) word.formulations.emplace_back(name);
   for (Parameter const& parameter : entry.parameters())
     word.parameters.push_back({parameter.name(), parameter.unit(), parameter.values()});
   for (ClaimInfo const& claim : info.claims) word.claims.push_back(claim.name);

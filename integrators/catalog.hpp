@@ -3,6 +3,7 @@
 /// follow.
 #include "integrators/gauss.hpp"
 #include "integrators/lie_group.hpp"
+#include "integrators/ode45.hpp"
 #include "integrators/rivals/arkode.hpp"
 #include "integrators/rivals/cvode.hpp"
 #include "integrators/rivals/odeint.hpp"
@@ -11,7 +12,7 @@
 
 namespace polhode {
 
-using OwnMethods = Types<Rk4, Dopri5,                                                 // explicit Runge-Kutta
+using OwnMethods = Types<Rk4, Dopri5, Dopri5Ode45,                                    // explicit Runge-Kutta
                          GaussEntry<1>, GaussEntry<2>, GaussEntry<3>, GaussEntry<4>,  // Gauss to round-off
                          Gauss2Sweeps1, Gauss2Sweeps2, Gauss2Tol6,                    // and not
                          LieEuler, Rkmk4, CommutatorFree4>;                           // Lie group

@@ -90,56 +90,75 @@ struct Gauss {
     /// carry: what rounding took from the state, in chart coordinates; belongs to x + carry.
     template <Space M>
     struct Memory {
-      Chart<M> carry = zero<Chart<M>>();
+      Chart<M> carry;
       std::int64_t iterations = 0;
       bool unconverged = false;  ///< a step's iteration came to rest far from a solution
-      void restart() { carry = zero<Chart<M>>(); }
+      Memory() { restart(); }
+      void fit(Point<M> const& x) {
+        carry = shaped_like<Chart<M>>(x);
+        restart();
+      }
+      void restart() { fill(carry, 0.0); }
     };
     template <Space M>
     struct Frame {
       std::array<Chart<M>, s> increment, stage;
+      Chart<M> place, slope_here, change, least, sum, rest;
+      Point<M> y;
+      Velocity<M> v;
+      void fit(Point<M> const& x) {
+        for (auto* all : {&increment, &stage})
+          for (Chart<M>& one : *all) one = shaped_like<Chart<M>>(x);
+        place = slope_here = change = least = sum = rest = shaped_like<Chart<M>>(x);
+        y = x;
+        v = shaped_like<Velocity<M>>(x);
+      }
     };
 
     template <Problem P, class M = typename P::Space, class S = typename M::Scalar>
     POLHODE_INLINE void step(P const& p, S const& t, R const& h, Point<M>& x, Frame<M>& frame,
                              Memory<M>& memory) const {
-      auto& L = frame.increment;
-      auto& Y = frame.stage;
+      auto& [L, Y, place, slope_here, change, least, sum, rest, y, v] = frame;
       std::array<R, s> hb, hc;
       unroll<s>([&](auto i) POLHODE_LAMBDA {
         hb[i] = h * table.b[i];
         hc[i] = h * table.c[i];
       });
-      Chart<M> const slope = M::rate(x, p(t, x));
+      slope(p, t, x, v, slope_here);
       unroll<s>([&](auto i) POLHODE_LAMBDA {
-        L[i] = scaled(hb[i], slope);
-        Y[i] = zero<Chart<M>>();
+        assign_scaled(L[i], hb[i], slope_here);
+        fill(Y[i], 0.0);
       });
 
-      Stagnation<Chart<M>> stagnation;
-      Chart<M> change;
-      for (int sweep = 0; sweep < most_sweeps; ++sweep) {
-        change = zero<Chart<M>>();
+      fill(least, 1e300);
+      for (int sweep = 0, idle = 0; sweep < most_sweeps && idle < 2; ++sweep) {
+        fill(change, 0.0);
         unroll<s>([&](auto i) POLHODE_LAMBDA {
-          Chart<M> u = memory.carry;
-          unroll<s>([&](auto j) POLHODE_LAMBDA { add(u, table.mu[i][j], L[j]); });
-          Chart<M>::each([](S& most, S const& now, S const& before)
-                             POLHODE_LAMBDA { most = max_of(most, abs_of(S(now - before))); },
-                         change, u, Y[i]);
-          Y[i] = u;
-          Chart<M> at = M::centre(x);
-          add(at, u);
-          L[i] = scaled(hb[i], M::chart_rate(x, at, p(S(t + hc[i]), M::retract(x, at))));
+          for_each_body<M>(x, [&](auto const& at) POLHODE_LAMBDA {
+            using Body = typename BodyOf<M>::type;
+            Chart<Body> u = at(memory.carry);
+            unroll<s>([&](auto j) POLHODE_LAMBDA { add(u, table.mu[i][j], at(L[j])); });
+            Chart<Body>::each([](S& most, S const& now, S const& before)
+                                  POLHODE_LAMBDA { most = max_of(most, abs_of(S(now - before))); },
+                              at(change), u, at(Y[i]));
+            at(Y[i]) = u;
+            Chart<Body> here = Body::centre(at(x));
+            add(here, u);
+            at(y) = Body::retract(at(x), here);
+            at(place) = here;
+          });
+          chart_slope(p, S(t + hc[i]), x, place, y, v, L[i]);
+          scale(L[i], hb[i]);
         });
         ++memory.iterations;
-        if (stagnation.reached(change)) break;
+        idle = idle_after(change, least, idle);
       }
       // At rest through round-off the last change is tiny; at rest because the iteration diverges it is not.
-      S const residual = distance<S>(change, zero<Chart<M>>()), size = distance<S>(Y[0], zero<Chart<M>>());
-      if (!(residual < S(1e-9) * size + S(1e-12))) [[unlikely]]
+      if (!(largest<S>(change) < S(1e-9) * largest<S>(Y[0]) + S(1e-12))) [[unlikely]]
         memory.unconverged = true;
 
-      Chart<M> sum = L[0], rest = memory.carry;
+      sum = L[0];
+      rest = memory.carry;
       unroll<s - 1>([&](auto j) POLHODE_LAMBDA {
         Chart<M>::each(
             [](S& total, S& lost, S const& term) POLHODE_LAMBDA {
@@ -149,7 +168,7 @@ struct Gauss {
             },
             sum, rest, L[j + 1]);
       });
-      M::retract_exactly(x, sum, rest, memory.carry);
+      retract_exactly<M>(x, sum, rest, memory.carry);
     }
   };
 
@@ -162,30 +181,20 @@ struct Gauss {
  private:
   static constexpr int most_sweeps = 200;
 
-  /// True when the changes of all components are 0, or none of them was smaller than ever, twice running.
+  /// How many sweeps running none of the components changed less than ever; 2, the end, if nothing changed at all.
   template <class V>
-  struct Stagnation {
-    V least = [] {
-      V huge;
-      V::each([](auto& a) POLHODE_LAMBDA { a = std::decay_t<decltype(a)>(1e300); }, huge);
-      return huge;
-    }();
-    int idle = 0;
-
-    POLHODE_INLINE bool reached(V const& change) {
-      bool smaller = false, still = true;
-      V::each(
-          [&](auto& low, auto const& now) POLHODE_LAMBDA {
-            using S = std::decay_t<decltype(now)>;
-            still = still && now == S(0.0);
-            smaller = smaller || now < low;
-            low = now < low ? now : low;
-          },
-          least, change);
-      idle = smaller ? 0 : idle + 1;
-      return still || idle == 2;
-    }
-  };
+  static POLHODE_INLINE int idle_after(V const& change, V& least, int idle) {
+    bool smaller = false, still = true;
+    V::each(
+        [&](auto& low, auto const& now) POLHODE_LAMBDA {
+          using S = std::decay_t<decltype(now)>;
+          still = still && now == S(0.0);
+          smaller = smaller || now < low;
+          low = now < low ? now : low;
+        },
+        least, change);
+    return still ? 2 : smaller ? 0 : idle + 1;
+  }
 };
 
 template <int s>
@@ -219,34 +228,51 @@ struct UnconvergedGauss2 {
   struct Memory {
     std::int64_t iterations = 0;
     void restart() {}
+    void fit(Point<M> const&) {}
   };
   template <Space M>
-  struct Frame {};
+  struct Frame {
+    Chart<M> k1, k2, new1, new2, u;
+    Point<M> y;
+    Velocity<M> v;
+    void fit(Point<M> const& x) {
+      k1 = k2 = new1 = new2 = u = shaped_like<Chart<M>>(x);
+      y = x;
+      v = shaped_like<Velocity<M>>(x);
+    }
+  };
 
   template <Problem P, class M = typename P::Space, class S = typename M::Scalar, class R = Real<S>>
-  POLHODE_INLINE void step(P const& p, S const& t, R const& h, Point<M>& x, Frame<M>&, Memory<M>& memory) const {
+  POLHODE_INLINE void step(P const& p, S const& t, R const& h, Point<M>& x, Frame<M>& frame, Memory<M>& memory) const {
+    auto& [k1, k2, new1, new2, u, y, v] = frame;
     R const root = sqrt(R(3.0)) / R(6.0);
-    R const near = R(0.25) * h, low = (R(0.25) - root) * h, high = (R(0.25) + root) * h;
-    Chart<M> k1 = M::rate(x, p(t, x)), k2 = k1;
-    auto const slope = [&](R const& c, R const& a1, R const& a2) POLHODE_LAMBDA {
-      Chart<M> u = M::centre(x);
-      add(u, a1, k1);
-      add(u, a2, k2);
-      return M::chart_rate(x, u, p(S(t + c * h), M::retract(x, u)));
+    R const near = R(0.25) * h, low = (R(0.25) - root) * h, high = (R(0.25) + root) * h, half = R(0.5) * h;
+    slope(p, t, x, v, k1);
+    k2 = k1;
+    auto const move = [&](R const& a1, R const& a2, Point<M>& to) POLHODE_LAMBDA {
+      displace<M>(
+          x,
+          [&](auto& z, auto const& at) POLHODE_LAMBDA {
+            add(z, a1, at(k1));
+            add(z, a2, at(k2));
+          },
+          u, to);
+    };
+    auto const stage = [&](R const& c, R const& a1, R const& a2, Chart<M>& k) POLHODE_LAMBDA {
+      move(a1, a2, y);
+      chart_slope(p, S(t + c * h), x, u, y, v, k);
     };
     int const most = stop == Stop::after_sweeps ? limit : 100;
     for (int sweep = 0; sweep < most; ++sweep) {
-      Chart<M> const new1 = slope(R(0.5) - root, near, low), new2 = slope(R(0.5) + root, high, near);
+      stage(R(0.5) - root, near, low, new1);
+      stage(R(0.5) + root, high, near, new2);
       S const change = max_of(distance<S>(new1, k1), distance<S>(new2, k2));
       k1 = new1;
       k2 = new2;
       ++memory.iterations;
       if (stop == Stop::below_tolerance && change < S(1e-6)) break;
     }
-    Chart<M> u = M::centre(x);
-    add(u, R(R(0.5) * h), k1);
-    add(u, R(R(0.5) * h), k2);
-    x = M::retract(x, u);
+    move(half, half, x);
   }
 };
 

@@ -6,7 +6,11 @@
 ///   restart()                        the field has jumped or x was changed from outside: forget history
 ///   begin()                          if there: a new run, forget the step size, too; otherwise restart() says it all
 ///   work()                           counts since bind
+/// Methods of equal steps have one_step(x, t, t_end), too: a step of any length, to events and from them.
 /// Methods that choose their own steps also have step(x, t, t_end): one accepted step, t moves.
+/// Those whose steps depend on where it all ends have set_horizon(t, t_end): a smooth arc begins.
+/// Libraries that find the zeros of switching functions themselves have find_roots() (do, from now on) and roots(): the
+/// functions on whose zero the last step ended.
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -65,6 +69,7 @@ struct MethodInfo {
   std::string_view pitfall = "";
   std::string_view no_projection = "";  ///< why policies `project` and `project_multiplier` are refused
   bool projects_natively = false;       ///< knows policy `native`
+  bool locates_events = true;           ///< by taking a step again, shorter, or by root finding of its own
   std::string_view not_built = "";      ///< why this binary refuses it
 };
 
@@ -97,11 +102,29 @@ constexpr std::string_view refusal(Needs needs) {
 /// For methods that remember nothing from step to step.
 struct NoMemory {
   void restart() {}
+  void fit(auto const&) {}
+};
+
+/// The storage F of a step on M: made anew on the stack for a small space, so that it lives in registers; made once, to
+/// the length of x, for many bodies.
+template <Space M, class F>
+struct Workspace {
+  explicit Workspace(Point<M> const&) {}
+  POLHODE_INLINE F open() {
+    F storage;
+    return storage;
+  }
+};
+template <PowerSpace M, class F>
+struct Workspace<M, F> {
+  explicit Workspace(Point<M> const& x) { storage.fit(x); }
+  F& open() { return storage; }
+  F storage;
 };
 
 /// Equal steps. A method supplies, for each space M:
-///   Frame<M>                   the storage of one step: locals, so that a small state stays in registers
-///   Memory<M>                  what survives from step to step, with restart(); NoMemory for most
+///   Frame<M>                   the storage of one step; fit(x) gives it the length of x (many bodies)
+///   Memory<M>                  what survives from step to step, with restart() and fit(x); NoMemory for most
 ///   step(p, t, h, x, frame, memory)
 template <class Method, Problem P>
 class Fixed {
@@ -111,7 +134,9 @@ class Fixed {
 
  public:
   Fixed(Method method, P const& problem, FixedStep control, NormPolicy policy)
-      : method_(std::move(method)), problem_(&problem), h_(control.h), policy_(policy) {}
+      : method_(std::move(method)), problem_(&problem), h_(control.h), policy_(policy), frame_(shape_of(problem)) {
+    memory_.fit(shape_of(problem));
+  }
 
   /// Fails with Status::diverged if the state is no longer finite at t_end.
   Status advance(Point<M>& x, R t, R t_end) {
@@ -120,10 +145,12 @@ class Fixed {
     bool const divides = double(rest / h_) < 1e-9;
     run(x, t, divides ? equal_step(t_end - t, whole) : h_, whole);
     if (!divides) run(x, t + R(double(whole)) * h_, rest, 1);
-    if (!all_finite(x)) return Status::diverged;
-    if constexpr (requires { memory_.unconverged; })
-      if (memory_.unconverged) return Status::nonlinear_fail;
-    return Status::ok;
+    return health_of(x);
+  }
+  /// One step to t_end, however long.
+  Status one_step(Point<M>& x, R t, R t_end) {
+    run(x, t, t_end - t, 1);
+    return health_of(x);
   }
   void restart() { memory_.restart(); }
   Work work() const {
@@ -139,6 +166,12 @@ class Fixed {
   /// the time). It is a pure function of (t, x), so nothing that it does to itself could be lost.
   using Field = std::conditional_t<std::is_trivially_copyable_v<P>, P const, P const&>;
 
+  Status health_of(Point<M> const& x) const {
+    if (!all_finite(x)) return Status::diverged;
+    if constexpr (requires { memory_.unconverged; })
+      if (memory_.unconverged) return Status::nonlinear_fail;
+    return Status::ok;
+  }
   /// In double h itself, so that one long advance and many short ones take the same steps to the last bit. A longer
   /// float gets the exact quotient: there a step given as a double is not exact.
   R equal_step(R const& span, std::int64_t n) const {
@@ -147,32 +180,46 @@ class Fixed {
     else
       return n > 0 ? span / R(double(n)) : h_;
   }
+  static Point<M> shape_of(P const& problem) {
+    if constexpr (PowerSpace<M>)
+      return problem.initial();
+    else
+      return {};
+  }
   POLHODE_INLINE void loop(Point<M>& x, R t, R h, std::int64_t n) {
-    typename Method::template Frame<M> frame;
-    Point<M> y = x;  // nobody points at y: it lives in registers
-    auto memory = memory_;
-    Field p = *problem_;
-    for (std::int64_t i = 0; i < n; ++i) {
-      method_.step(p, S(t + R(double(i)) * h), h, y, frame, memory);
-      if (policy_ != NormPolicy::none) [[unlikely]]
-        projections_.template apply<M>(y, policy_);
-    }
-    x = y;
-    memory_ = memory;
     steps_ += n;
+    if constexpr (PowerSpace<M>) {
+      run_steps(*problem_, x, t, h, n, frame_.open(), memory_);
+    } else {
+      auto frame = frame_.open();
+      Point<M> y = x;  // nobody points at y: it lives in registers
+      auto memory = memory_;
+      Field p = *problem_;
+      run_steps(p, y, t, h, n, frame, memory);
+      x = y;
+      memory_ = memory;
+    }
+  }
+  POLHODE_INLINE void run_steps(P const& p, Point<M>& x, R t, R h, std::int64_t n, auto& frame, auto& memory) {
+    for (std::int64_t i = 0; i < n; ++i) {
+      method_.step(p, S(t + R(double(i)) * h), h, x, frame, memory);
+      if (policy_ != NormPolicy::none) [[unlikely]]
+        projections_.template apply<M>(x, policy_);
+    }
   }
   [[gnu::flatten]] void run_flattened(Point<M>& x, R t, R h, std::int64_t n) { loop(x, t, h, n); }
   void run(Point<M>& x, R t, R h, std::int64_t n) {
-    if constexpr (ScalarTraits<S>::flattened)
+    if constexpr (ScalarTraits<S>::flattened && !PowerSpace<M>)
       run_flattened(x, t, h, n);
     else
-      loop(x, t, h, n);  // long floats and series: inlining everything costs compile time and gains nothing
+      loop(x, t, h, n);  // many bodies, long floats, series: inlining everything costs compile time and gains nothing
   }
 
   Method method_;
   P const* problem_;
   R h_;
   NormPolicy policy_;
+  Workspace<M, typename Method::template Frame<M>> frame_;
   typename Method::template Memory<M> memory_{};
   Projections projections_;
   std::int64_t steps_ = 0;

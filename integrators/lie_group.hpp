@@ -46,29 +46,59 @@ struct CommutatorFree4 {
   }
 
   template <Space M>
-  struct Frame {};
+  struct Frame {
+    std::array<Chart<M>, 4> k;
+    Chart<M> u;
+    Point<M> y2, y;
+    Velocity<M> v;
+    void fit(Point<M> const& x) {
+      for (Chart<M>& slope : k) slope = shaped_like<Chart<M>>(x);
+      u = shaped_like<Chart<M>>(x);
+      y2 = y = x;
+      v = shaped_like<Velocity<M>>(x);
+    }
+  };
   template <Space M>
   using Memory = NoMemory;
 
   template <Problem P, class M = typename P::Space, class S = typename M::Scalar, class R = Real<S>>
-  POLHODE_INLINE void step(P const& p, S const& t, R const& h, Point<M>& x, Frame<M>&, NoMemory&) const {
+  POLHODE_INLINE void step(P const& p, S const& t, R const& h, Point<M>& x, Frame<M>& frame, NoMemory&) const {
+    auto& [k, u, y2, y, v] = frame;
     R const half = R(0.5) * h, one = h / R(12.0), two = R(2.0) * one, three = R(3.0) * one;
-    // The velocity at y, seen from y itself: only combinations of velocities are exponentiated.
-    auto const slope = [&](S const& time, Point<M> const& y) POLHODE_LAMBDA { return M::rate(y, p(time, y)); };
-    auto const moved = [](Point<M> const& y, auto const&... term) POLHODE_LAMBDA {
-      Chart<M> u = M::centre(y);
-      (add(u, term.first, term.second), ...);
-      return M::retract(y, u);
-    };
-    auto const times = [](R const& c, Chart<M> const& k) POLHODE_LAMBDA { return std::pair<R, Chart<M> const&>(c, k); };
-
-    Chart<M> const k1 = slope(t, x);
-    Point<M> const y2 = moved(x, times(half, k1));
-    Chart<M> const k2 = slope(S(t + half), y2);
-    Chart<M> const k3 = slope(S(t + half), moved(x, times(half, k2)));
-    Chart<M> const k4 = slope(S(t + h), moved(y2, times(-half, k1), times(h, k3)));
-    Point<M> const middle = moved(x, times(three, k1), times(two, k2), times(two, k3), times(-one, k4));
-    x = moved(middle, times(-one, k1), times(two, k2), times(two, k3), times(three, k4));
+    // Slopes are seen from where they are taken: only combinations of velocities are exponentiated.
+    slope(p, t, x, v, k[0]);
+    displace<M>(
+        x, [&](auto& z, auto const& at) POLHODE_LAMBDA { add(z, half, at(k[0])); }, u, y2);
+    slope(p, S(t + half), y2, v, k[1]);
+    displace<M>(
+        x, [&](auto& z, auto const& at) POLHODE_LAMBDA { add(z, half, at(k[1])); }, u, y);
+    slope(p, S(t + half), y, v, k[2]);
+    displace<M>(
+        y2,
+        [&](auto& z, auto const& at) POLHODE_LAMBDA {
+          add(z, R(-half), at(k[0]));
+          add(z, h, at(k[2]));
+        },
+        u, y);
+    slope(p, S(t + h), y, v, k[3]);
+    displace<M>(
+        x,
+        [&](auto& z, auto const& at) POLHODE_LAMBDA {
+          add(z, three, at(k[0]));
+          add(z, two, at(k[1]));
+          add(z, two, at(k[2]));
+          add(z, R(-one), at(k[3]));
+        },
+        u, y);
+    displace<M>(
+        y,
+        [&](auto& z, auto const& at) POLHODE_LAMBDA {
+          add(z, R(-one), at(k[0]));
+          add(z, two, at(k[1]));
+          add(z, two, at(k[2]));
+          add(z, three, at(k[3]));
+        },
+        u, x);
   }
 };
 

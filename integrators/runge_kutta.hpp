@@ -18,38 +18,66 @@ struct Explicit {
   template <Space M>
   struct Frame {
     std::array<Chart<M>, T::stages> k;
+    Chart<M> u;
+    Point<M> y;
+    Velocity<M> v;
+    void fit(Point<M> const& x) {
+      for (Chart<M>& slope : k) slope = shaped_like<Chart<M>>(x);
+      u = shaped_like<Chart<M>>(x);
+      y = x;
+      v = shaped_like<Velocity<M>>(x);
+    }
   };
   template <Space M>
   using Memory = NoMemory;
 
   template <Problem P, class M = typename P::Space, class S = typename M::Scalar, class R = Real<S>>
   POLHODE_INLINE void step(P const& p, S const& t, R const& h, Point<M>& x, Frame<M>& frame, NoMemory&) const {
-    frame.k[0] = M::rate(x, p(t, x));
-    x = finish<M>(x, h, frame.k, [&](auto stage, Chart<M> const& u, Point<M> const& y) POLHODE_LAMBDA {
-      return M::chart_rate(x, u, p(S(t + T::c[stage].template as<R>() * h), y));
-    });
+    slope(p, t, x, frame.v, frame.k[0]);
+    finish(p, t, h, x, frame, x);
   }
 
-  /// The rest of a step once k[0] is known; slope(stage, u, y) evaluates one stage at y, whose chart coordinates are u.
-  /// Returns the new point; the sum with b grows as the stages arrive, or g++ would spill them all.
-  template <Space M, class R, class Slope>
-  static POLHODE_INLINE Point<M> finish(Point<M> const& x, R const& h, std::array<Chart<M>, T::stages>& k,
-                                        Slope slope) {
-    Chart<M> next = M::centre(x);
+  /// The rest of a step from x once k[0] is known; the new point goes to y, which may be x.
+  template <Problem P, class M = typename P::Space, class S = typename M::Scalar, class R = Real<S>>
+  static POLHODE_INLINE void finish(P const& p, S const& t, R const& h, Point<M> const& x, Frame<M>& frame,
+                                    Point<M>& y) {
+    auto& k = frame.k;
+    // One body: the sum with b grows as the stages arrive, or g++ would spill them all.
+    [[maybe_unused]] Chart<M> next;
     auto const accumulate = [&](auto j) POLHODE_LAMBDA {
-      if constexpr (T::b[j].over != 0) add(next, R(T::b[j].template as<R>() * h), k[j]);
+      if constexpr (SmallSpace<M> && T::b[j].over != 0) add(next, R(T::b[j].template as<R>() * h), k[j]);
     };
+    if constexpr (SmallSpace<M>) next = M::centre(x);
     accumulate(std::integral_constant<int, 0>{});
     unroll<T::stages - 1>([&](auto m) POLHODE_LAMBDA {
       constexpr int i = m + 1;
-      Chart<M> u = M::centre(x);
-      unroll<i>([&](auto j) POLHODE_LAMBDA {
-        if constexpr (T::a[i][j].over != 0) add(u, R(T::a[i][j].template as<R>() * h), k[j]);
-      });
-      k[i] = slope(std::integral_constant<int, i>{}, u, M::retract(x, u));
+      displace<M>(x, stage_sum<i>(k, h), frame.u, frame.y);
+      chart_slope(p, S(t + T::c[i].template as<R>() * h), x, frame.u, frame.y, frame.v, k[i]);
       accumulate(std::integral_constant<int, i>{});
     });
-    return M::retract(x, next);
+    if constexpr (SmallSpace<M>)
+      y = M::retract(x, next);
+    else
+      displace<M>(x, step_sum(k, h), frame.u, y);
+  }
+
+ private:
+  /// h times row i of a, and h times b, as displace() wants them.
+  template <int i, class R>
+  static POLHODE_INLINE auto stage_sum(auto const& k, R const& h) {
+    return [&k, &h](auto& u, auto const& at) POLHODE_LAMBDA {
+      unroll<i>([&](auto j) POLHODE_LAMBDA {
+        if constexpr (T::a[i][j].over != 0) add(u, R(T::a[i][j].template as<R>() * h), at(k[j]));
+      });
+    };
+  }
+  template <class R>
+  static POLHODE_INLINE auto step_sum(auto const& k, R const& h) {
+    return [&k, &h](auto& u, auto const& at) POLHODE_LAMBDA {
+      unroll<T::stages>([&](auto j) POLHODE_LAMBDA {
+        if constexpr (T::b[j].over != 0) add(u, R(T::b[j].template as<R>() * h), at(k[j]));
+      });
+    };
   }
 };
 
@@ -65,23 +93,17 @@ struct EmbeddedPair {
   static constexpr int order = T::order, error_order = T::error_order;
 
   template <Space M>
-  struct Frame {
-    std::array<Chart<M>, T::stages> k;
-  };
+  using Frame = typename Explicit<T>::template Frame<M>;
 
-  /// One trial step from x with slope `first`; writes the new point, its slope and the error estimate.
+  /// One trial step from x, whose slope is frame.k[0]; writes the new point, its slope and the error estimate.
   template <Problem P, class M = typename P::Space, class S = typename M::Scalar, class R = Real<S>>
-  POLHODE_INLINE void attempt(P const& p, R const& t, R const& h, Point<M> const& x, Chart<M> const& first,
-                              Frame<M>& frame, Point<M>& y, Chart<M>& last, Chart<M>& error) const {
-    auto& k = frame.k;
-    k[0] = first;
-    y = Explicit<T>::template finish<M>(x, h, k, [&](auto stage, Chart<M> const& u, Point<M> const& z) POLHODE_LAMBDA {
-      return M::chart_rate(x, u, p(S(t + T::c[stage].template as<R>() * h), z));
-    });
-    last = M::rate(y, p(S(t + h), y));
-    error = scaled(R(T::e[T::stages].template as<R>() * h), last);
+  POLHODE_INLINE void attempt(P const& p, R const& t, R const& h, Point<M> const& x, Frame<M>& frame, Point<M>& y,
+                              Chart<M>& last, Chart<M>& error) const {
+    Explicit<T>::finish(p, S(t), h, x, frame, y);
+    slope(p, S(t + h), y, frame.v, last);
+    assign_scaled(error, R(T::e[T::stages].template as<R>() * h), last);
     unroll<T::stages>([&](auto j) POLHODE_LAMBDA {
-      if constexpr (T::e[j].over != 0) add(error, R(T::e[j].template as<R>() * h), k[j]);
+      if constexpr (T::e[j].over != 0) add(error, R(T::e[j].template as<R>() * h), frame.k[j]);
     });
   }
 };

@@ -20,7 +20,12 @@ class Controlled {
 
  public:
   Controlled(Pair pair, P const& problem, Adaptive control, NormPolicy policy)
-      : pair_(std::move(pair)), problem_(&problem), control_(control), policy_(policy) {}
+      : pair_(std::move(pair)), problem_(&problem), control_(control), policy_(policy), frame_(shape_of(problem)) {
+    if constexpr (PowerSpace<M>) {
+      slope_ = shaped_like<Chart<M>>(problem.initial());
+      trial_.fit(problem.initial());
+    }
+  }
 
   Status advance(Point<M>& x, R t, R t_end) {
     for (std::int64_t trials = work_.steps + work_.rejected; t < t_end;) {
@@ -31,7 +36,7 @@ class Controlled {
   }
   /// One accepted step, not beyond t_end; t moves.
   Status step(Point<M>& x, R& t, R t_end) {
-    if (!fresh_slope_) slope_ = M::rate(x, (*problem_)(S(t), x));
+    if (!fresh_slope_) slope_at(t, x, slope_);
     fresh_slope_ = true;
     if (!all_finite(slope_)) return Status::diverged;
     if (!(R(0.0) < h_)) h_ = starting_step(x, t, t_end - t);
@@ -42,10 +47,10 @@ class Controlled {
       R const h = last ? left : h_;
       if (double(h) <= 10 * std::numeric_limits<double>::epsilon() * std::fabs(double(t)) && !last)
         return Status::step_underflow;
-      Point<M> y;
-      Chart<M> new_slope, error;
-      pair_.attempt(*problem_, t, h, x, slope_, frame_, y, new_slope, error);
-      double const size = norm(error, x, y);
+      auto&& frame = frame_.open();
+      frame.k[0] = slope_;
+      pair_.attempt(*problem_, t, h, x, frame, trial_.y, trial_.slope, trial_.error);
+      double const size = norm(trial_.error, x, trial_.y);
       if (!std::isfinite(size)) {
         if (++work_.rejected; !all_finite(x)) return Status::diverged;
         h_ = h * R(0.1);
@@ -60,8 +65,8 @@ class Controlled {
         // A step cut short by t_end says little about the next one.
         if (!last || h == h_ || growth < 1) h_ = h * R(rejected_before ? std::min(growth, 1.0) : growth);
         last_size_ = std::max(size, 1e-4);
-        x = y;
-        slope_ = new_slope;
+        x = trial_.y;
+        slope_ = trial_.slope;
         t = last ? t_end : R(t + h);
         ++work_.steps;
         if (policy_ != NormPolicy::none) {
@@ -102,16 +107,18 @@ class Controlled {
           sum += part * part;
         },
         error, x, y);
-    return std::sqrt(sum / Chart<M>::size);
+    return std::sqrt(sum / size_of(error));
   }
   /// Hairer, Norsett & Wanner I, II.4, "starting step size".
   R starting_step(Point<M> const& x, R const& t, R const& longest) {
     double const size = norm(x, x, x), speed = norm(slope_, x, x);
     double h = size < 1e-5 || speed < 1e-5 ? 1e-6 : 0.01 * size / speed;
     h = std::min(h, double(longest));
-    Point<M> y = x;
+    Point<M>& y = trial_.y;
+    Chart<M>& change = trial_.slope;
+    y = x;
     add(y, R(h), slope_);
-    Chart<M> change = M::rate(y, (*problem_)(S(t + R(h)), y));
+    slope_at(R(t + R(h)), y, change);
     add(change, R(-1.0), slope_);
     double const curvature = norm(change, x, x) / h;
     double const greatest = std::max(speed, curvature);
@@ -119,12 +126,34 @@ class Controlled {
     return R(std::min({100 * h, h1, double(longest)}));
   }
 
+  static Point<M> shape_of(P const& problem) {
+    if constexpr (PowerSpace<M>)
+      return problem.initial();
+    else
+      return {};
+  }
+  void slope_at(R const& t, Point<M> const& x, Chart<M>& k) {
+    auto&& frame = frame_.open();
+    slope(*problem_, S(t), x, frame.v, k);
+  }
+
+  /// What a trial step gives.
+  struct Trial {
+    Point<M> y;
+    Chart<M> slope, error;
+    void fit(Point<M> const& x) {
+      y = x;
+      slope = error = shaped_like<Chart<M>>(x);
+    }
+  };
+
   Pair pair_;
   P const* problem_;
   Adaptive control_;
   NormPolicy policy_;
-  typename Pair::template Frame<M> frame_;
+  Workspace<M, typename Pair::template Frame<M>> frame_;
   Chart<M> slope_;
+  Trial trial_;
   bool fresh_slope_ = false;
   R h_ = R(0.0);
   double last_size_ = 1e-4;

@@ -2,6 +2,7 @@
 /// Taylor series of the solution of any problem, by evaluating its own source on power series (Jet).
 /// Source: Jorba & Zou (2005), Experimental Mathematics 14, 99 (coefficients, step size from the last two)
 /// Use for references: any precision, and values between steps to that same precision.
+#include <optional>
 #include <vector>
 
 #include "integrators/integrator.hpp"
@@ -39,10 +40,16 @@ template <class R, int degree, Problem P>
     double const size = std::max(1.0, largest(0));
     double const span = double(longest);
     int top = 0;
+    Point<M> point = p.initial();  // for its length
+    Velocity<M> v = shaped_like<Velocity<M>>(point);
+    Chart<M> k = shaped_like<Chart<M>>(point);
+    std::optional<typename Series::Memory> memory;  // from the first order on: constants are constants until then
     for (int small = 0; top < degree && small < 2;) {
-      Point<M> point;
+      if (top == 1) memory.emplace();
+      if (memory) memory->rewind();
       load(point, x.data());
-      store(M::rate(point, p(time, point)), rate.data());
+      slope(p, time, point, v, k);
+      store(k, rate.data());
       for (std::size_t i = 0; i < x.size(); ++i) {
         x[i].degree = top + 1;
         x[i][top + 1] = (rate[i].degree >= top ? rate[i][top] : R(0.0)) / R(double(top + 1));
@@ -54,10 +61,10 @@ template <class R, int degree, Problem P>
     }
 
     double h = span;
-    for (int k : {top - 1, top}) {
-      double const last = largest(k);
+    for (int term : {top - 1, top}) {
+      double const last = largest(term);
       if (!std::isfinite(last)) h = 0;
-      if (last > 0) h = std::min(h, std::pow(tolerance * size / last, 1.0 / k));
+      if (last > 0) h = std::min(h, std::pow(tolerance * size / last, 1.0 / term));
     }
     bool const reaches = h >= span * (1 - 1e-12);
     return {t, reaches ? longest : R(h), std::move(x)};

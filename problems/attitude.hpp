@@ -37,9 +37,9 @@ POLHODE_INLINE Quat<S> normalised(Quat<S> const& q) {
   S const norm = sqrt(dot(q, q));
   return {q.x / norm, q.y / norm, q.z / norm, q.w / norm};
 }
-/// q.q - 1 of a quaternion of norm below 1.4, to half the digits of S more than q.q has: near the sphere the rounding of
-/// q.q is all that would be left. Every component's head has half the digits, in fixed point, so the sum of the heads'
-/// squares less 1 is exact; only the small rest is rounded.
+/// q.q - 1 of a quaternion of norm below 1.4, to half the digits of S more than q.q has: near the sphere the rounding
+/// of q.q is all that would be left. Every component's head has half the digits, in fixed point, so the sum of the
+/// heads' squares less 1 is exact; only the small rest is rounded.
 template <class S>
 POLHODE_INLINE S norm_excess(Quat<S> const& q) {
   S const shift(ScalarTraits<Real<S>>::head_shift);

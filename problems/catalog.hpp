@@ -1,8 +1,13 @@
 #pragma once
 /// Every problem and every formulation. Adding one is a header and a line here; the rest of the project follows.
+#include "problems/dead_zone.hpp"
+#include "problems/euler.hpp"
 #include "problems/formulations.hpp"
 #include "problems/free_body.hpp"
+#include "problems/group_consensus.hpp"
+#include "problems/mrp.hpp"
 #include "problems/pd_slew.hpp"
+#include "problems/quaternion_sync.hpp"
 #include "problems/tether_capture.hpp"
 
 namespace polhode {
@@ -12,10 +17,23 @@ namespace polhode {
 using Problems = Types<
     FreeBody,
     PdSlew,
-    TetherCapture
+    TetherCapture,
+    DeadZone,
+    QuaternionSync,
+    GroupConsensus
     >;
 // clang-format on
 
-using Formulations = Types<Formulation<FlatQuaternion>, Formulation<S3>, Formulation<SO3>, Formulation<FlatRotation>>;
+/// Of one rigid body.
+using Formulations = Types<Formulation<FlatQuaternion>, Formulation<S3>, Formulation<SO3>, Formulation<FlatRotation>,
+                           Formulation<Mrp>, Formulation<MrpShadow>, Formulation<EulerAngles>>;
+/// Those in which methods are raced, unless a problem names its own: typed runs are what the build spends its time on.
+using TimedFormulations =
+    Types<Formulation<FlatQuaternion>, Formulation<S3>, Formulation<SO3>, Formulation<FlatRotation>>;
+/// Of many rigid bodies.
+using BodiesFormulations = Types<Formulation<FlatQuaternion>, Formulation<S3>, Formulation<SO3>,
+                                 Formulation<FlatRotation>, Formulation<Mrp>, Formulation<MrpShadow>>;
+/// Of many attitudes.
+using AttitudesFormulations = Types<Formulation<FlatQuaternion>, Formulation<S3>, Formulation<Mrp>>;
 
 }  // namespace polhode

@@ -23,6 +23,8 @@
 
 #include "problems/controllers/dead_zone.hpp"
 #include "problems/definition.hpp"
+#include "problems/formulations.hpp"
+#include "problems/history.hpp"
 #include "problems/rigid_body.hpp"
 
 namespace polhode {
@@ -133,7 +135,9 @@ class DeadZone {
                    {"sigma_max", "the greatest |sigma|; above 1 the proof does not hold (see the errata)", {}, ""},
                    {"v_x_peak", "the command's greatest |v_x|", {}, "N m"},
                    {"v_y_peak", "the command's greatest |v_y|", {}, "N m"},
-                   {"v_z_peak", "the command's greatest |v_z|", {}, "N m"}},
+                   {"v_z_peak", "the command's greatest |v_z|", {}, "N m"},
+                   {"chatter", "total variation of v, summed over the axes, at the steps taken", {}, "N m"}},
+        .step = 0.005,  // K / beta = 100 1/s
         // Whether a method stops at the kinks: same problem, more error.
         .driven = {"unlocated"}};
     return facts;
@@ -154,6 +158,7 @@ class DeadZone {
   double horizon = 100;       ///< [s]; 50 s past t_f
   double sample_period = 0;   ///< continuous
   bool locate_events = true;  ///< methods stop at the kinks
+  using TimedFormulations = Types<Formulation<FlatQuaternion>, Formulation<S3>, Formulation<Mrp>>;
   bool torque_free() const { return false; }
   /// There is one form of the inertia here, and `field` gives it for both: timed runs compile the fast one alone.
   bool principal() const { return true; }
@@ -229,6 +234,9 @@ inline std::vector<ClaimResult> DeadZone::claims(History const& history) const {
   results.push_back({"sigma_max", farthest, {}, {}});
   for (char const* axis : {"v_x", "v_y", "v_z"})
     results.push_back({std::string(axis) + "_peak", greatest(axis, 0), {}, {}});
+  double chatter = 0;
+  for (char const* axis : {"v_x", "v_y", "v_z"}) chatter += history::total_variation(history.column(axis));
+  results.push_back({"chatter", chatter, {}, {}});
   return results;
 }
 

@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "problems/erased.hpp"
-#include "problems/parameters.hpp"
+#include "problems/rigid_body.hpp"
 
 namespace polhode {
 
@@ -36,6 +36,7 @@ struct ProblemInfo {
   std::vector<std::vector<std::string>> variants;  ///< groups that exclude each other; the first is the default
   std::vector<std::string> events;                 ///< what a method would have to locate or land on
   std::vector<ClaimInfo> claims;
+  double step = 0.1;  ///< [s] at which every fixed-step method of the catalogue is stable on the default choice
   std::vector<std::string> driven{};  ///< variant words that change how a run is driven, not what it is held against
 };
 
@@ -44,6 +45,7 @@ struct History {
   std::vector<double> times;         ///< [s]
   std::vector<std::string> columns;  ///< q1 q2 q3 q4 wx wy wz and the problem's own
   std::vector<std::vector<double>> rows;
+  std::vector<double> events{};  ///< times of located state events [s], the first 256
 
   /// The values of one column. Throws std::out_of_range for an unknown name.
   std::vector<double> column(std::string const& name) const;
@@ -54,10 +56,19 @@ struct History {
 ///   parameters()           name, unit, default, rule
 ///   horizon, sample_period [s]; 0 = continuous control
 ///   torque_free()          energy and angular momentum are invariants
-///   principal()            the fast form of the inertia serves
 ///   columns()              what the problem shows beside its state
 ///   claims(history)        the claims, evaluated
-///   field<S, A, fast>()    the problem in scalar S and attitude space A
+///   field<S, A, fast>()    the problem in scalar S and attitude space A, on one body, Attitudes or RigidBodies
+/// and where it applies (see the functions below, which say what holds without)
+///   Formulations           those that it can be written in
+///   TimedFormulations      those in which methods are raced
+///   refusal(formulation)   why this choice makes no sense in one of them
+///   principal()            the fast form of the inertia serves
+///   body()                 the rigid body, if it is one
+///   switches()             the field has kinks or jumps in the state
+///   locate_events          false: let methods run over them
+///   no_reference()         why there is no solution to hold a run against
+///   warning()              what a user should know of this choice
 template <class D>
 concept Definition = std::constructible_from<D, Choice const&> && requires(D d, D const c, History const& history) {
   { D::info() } -> std::convertible_to<ProblemInfo const&>;
@@ -65,17 +76,72 @@ concept Definition = std::constructible_from<D, Choice const&> && requires(D d, 
   { c.horizon } -> std::convertible_to<double>;
   { c.sample_period } -> std::convertible_to<double>;
   { c.torque_free() } -> std::same_as<bool>;
-  { c.principal() } -> std::same_as<bool>;
-  c.body();
   { c.columns() } -> std::same_as<std::vector<Column>>;
   { c.claims(history) } -> std::same_as<std::vector<ClaimResult>>;
   { c.template field<double, FlatQuaternion, true>() } -> Problem;
 };
 
+/// In principal axes unless the definition says otherwise.
+template <Definition D>
+bool is_principal(D const& definition) {
+  if constexpr (requires { definition.principal(); })
+    return definition.principal();
+  else
+    return true;
+}
+/// Null for problems that are not one rigid body.
+template <Definition D>
+BodyParameters const* body_of(D const& definition) {
+  if constexpr (requires { definition.body(); })
+    return &definition.body();
+  else
+    return nullptr;
+}
+/// The field is smooth unless the definition says otherwise.
+template <Definition D>
+bool switches(D const& definition) {
+  if constexpr (requires { definition.switches(); })
+    return definition.switches();
+  else
+    return false;
+}
+/// State events are located, by methods that can, unless the definition says otherwise.
+template <Definition D>
+bool wants_events(D const& definition) {
+  if constexpr (requires { definition.locate_events; })
+    return definition.locate_events;
+  else
+    return true;
+}
+/// Empty: there is a reference.
+template <Definition D>
+std::string why_no_reference(D const& definition) {
+  if constexpr (requires { definition.no_reference(); })
+    return definition.no_reference();
+  else
+    return "";
+}
+/// Empty: nothing to warn of.
+template <Definition D>
+std::string warning_of(D const& definition) {
+  if constexpr (requires { definition.warning(); })
+    return definition.warning();
+  else
+    return "";
+}
+/// Empty: the formulation serves.
+template <Definition D>
+std::string refusal_of(D const& definition, std::string_view formulation) {
+  if constexpr (requires { definition.refusal(formulation); })
+    return definition.refusal(formulation);
+  else
+    return "";
+}
+
 /// The field of a definition with its type forgotten.
 template <Scalar S, template <class> class A, Definition D>
 auto erase(D const& definition) {
-  if (definition.principal()) return erase_type(definition.template field<S, A, true>());
+  if (is_principal(definition)) return erase_type(definition.template field<S, A, true>());
   return erase_type(definition.template field<S, A, false>());
 }
 

@@ -24,21 +24,32 @@ class Erased {
   /// Takes a sample: the held torque changes. Nothing for continuous problems.
   virtual void sample(Real<S> const& t, Point<M> const& x) = 0;
   /// Writes the problem's own columns; only runs in double show anything.
-  virtual void show(Point<M> const& x, std::span<double> out) const = 0;
+  virtual void show(Real<S> const& t, Point<M> const& x, std::span<double> out) const = 0;
   /// Announced times at which the field is not smooth [s], ascending: steps land on them, methods restart.
   virtual std::vector<double> time_events() const = 0;
   /// The event at t has come: from now on the field is that of the next phase. A problem with time events switches here
   /// and not by comparing t, for the last stage of the step before the event looks at the field at t, too.
   virtual void enter_phase(Real<S> const& t) = 0;
+  /// See SwitchingProblem; 0 events and nothing to do for smooth problems.
+  virtual int state_events() const = 0;
+  virtual void event_values(S const& t, Point<M> const& x, std::span<S> g) const = 0;
+  virtual void take_sides(Real<S> const& t, Point<M> const& x) = 0;
+  virtual void cross(int k) = 0;
 
-  Velocity<M> operator()(S const& t, Point<M> const& x) const {
+  Velocity<M> operator()(S const& t, Point<M> const& x) const requires SmallSpace<M> {
+    Velocity<M> v;
     ++evaluations_;
-    return evaluate(t, x);
+    evaluate(t, x, v);
+    return v;
+  }
+  void operator()(S const& t, Point<M> const& x, Velocity<M>& v) const requires PowerSpace<M> {
+    ++evaluations_;
+    evaluate(t, x, v);
   }
   std::int64_t evaluations() const { return evaluations_; }
 
  protected:
-  virtual Velocity<M> evaluate(S const& t, Point<M> const& x) const = 0;
+  virtual void evaluate(S const& t, Point<M> const& x, Velocity<M>& v) const = 0;
 
  private:
   mutable std::int64_t evaluations_ = 0;
@@ -55,8 +66,14 @@ class ErasedAs final : public Erased<typename P::Space> {
   void sample([[maybe_unused]] Real<S> const& t, [[maybe_unused]] Point<M> const& x) override {
     if constexpr (SampledProblem<P>) problem_.sample(t, x);
   }
-  void show([[maybe_unused]] Point<M> const& x, [[maybe_unused]] std::span<double> out) const override {
-    if constexpr (std::same_as<S, double> && requires { problem_.show(x, out); }) problem_.show(x, out);
+  void show([[maybe_unused]] Real<S> const& t, [[maybe_unused]] Point<M> const& x,
+            [[maybe_unused]] std::span<double> out) const override {
+    if constexpr (!std::same_as<S, double>)
+      return;
+    else if constexpr (requires { problem_.show(t, x, out); })
+      problem_.show(t, x, out);
+    else if constexpr (requires { problem_.show(x, out); })
+      problem_.show(x, out);
   }
   std::vector<double> time_events() const override {
     if constexpr (requires { problem_.time_events(); })
@@ -67,9 +84,30 @@ class ErasedAs final : public Erased<typename P::Space> {
   void enter_phase([[maybe_unused]] Real<S> const& t) override {
     if constexpr (requires { problem_.enter_phase(t); }) problem_.enter_phase(t);
   }
+  int state_events() const override {
+    if constexpr (SwitchingProblem<P>)
+      return problem_.state_events();
+    else
+      return 0;
+  }
+  void event_values([[maybe_unused]] S const& t, [[maybe_unused]] Point<M> const& x,
+                    [[maybe_unused]] std::span<S> g) const override {
+    if constexpr (SwitchingProblem<P>) problem_.event_values(t, x, g);
+  }
+  void take_sides([[maybe_unused]] Real<S> const& t, [[maybe_unused]] Point<M> const& x) override {
+    if constexpr (SwitchingProblem<P>) problem_.take_sides(t, x);
+  }
+  void cross([[maybe_unused]] int k) override {
+    if constexpr (SwitchingProblem<P>) problem_.cross(k);
+  }
 
  protected:
-  Velocity<M> evaluate(S const& t, Point<M> const& x) const override { return problem_(t, x); }
+  void evaluate(S const& t, Point<M> const& x, Velocity<M>& v) const override {
+    if constexpr (PowerSpace<M>)
+      problem_(t, x, v);
+    else
+      v = problem_(t, x);
+  }
 
  private:
   P problem_;

@@ -39,8 +39,8 @@ struct EulerAngles : Flat<S, Vec3<S>>, Unconstrained<S, Vec3<S>> {
     S const sine = Real<S>(2.0) * (q.w * q.y - q.x * q.z), cosine = sqrt((a * a + b * b) * (c * c + d * d));
     return {wrapped(sum - difference), atan2(sine, cosine), wrapped(sum + difference)};
   }
-  /// Within 1e-6 rad of a pitch of 90 deg, up or down, or of its equals half turns away.
-  static POLHODE_INLINE bool singular(Vec3<S> const& angles) { return abs_of(S(cos(angles.y))) < S(1e-6); }
+  /// Within 1e-6 rad of a pitch of 90 deg, up or down, or beyond it: no attitude is there, a step has jumped across.
+  static POLHODE_INLINE bool singular(Vec3<S> const& angles) { return cos(angles.y) < S(1e-6); }
 
  private:
   /// An angle of at most a turn, brought within half a turn.

@@ -186,6 +186,7 @@ class GroupConsensus {
   using Formulations = Types<Formulation<FlatQuaternion>, Formulation<S3>, Formulation<SO3>, Formulation<FlatRotation>,
                              Formulation<Mrp>, Formulation<MrpShadow>>;
 
+  using TimedFormulations = Types<Formulation<FlatQuaternion>, Formulation<S3>, Formulation<Mrp>>;
   std::vector<Column> columns() const {
     return {{"lyapunov", "J"}, {"spread", "rad/s"}, {"sigma_max", ""}, {"g1_x", "rad/s"}, {"g1_y", "rad/s"},
             {"g1_z", "rad/s"}, {"g2_x", "rad/s"},   {"g2_y", "rad/s"}, {"g2_z", "rad/s"}};

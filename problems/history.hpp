@@ -1,6 +1,7 @@
 #pragma once
 /// What claims ask of a column against time.
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -19,6 +20,12 @@ inline double rise(std::vector<double> const& y) {
 inline double fall(std::vector<double> y) {
   for (double& value : y) value = -value;
   return rise(y);
+}
+/// How far y travels, there and back: the sum of |changes| from row to row.
+inline double total_variation(std::vector<double> const& y) {
+  double sum = 0;
+  for (std::size_t i = 1; i < y.size(); ++i) sum += std::fabs(y[i] - y[i - 1]);
+  return sum;
 }
 /// The time from which y stays below `bound`, by linear interpolation; nothing if it ends above.
 inline std::optional<double> below_from(std::vector<double> const& t, std::vector<double> const& y, double bound) {

@@ -3,6 +3,7 @@
 /// x_{k+1} = f(x)_k / (k + 1).   Source: Jorba & Zou (2005), Experimental Mathematics 14, sec. 2.
 /// A jet of degree 0 is a constant; an operation has the higher degree of its operands, never above `most`.
 #include <array>
+#include <vector>
 
 #include "problems/scalar.hpp"
 
@@ -50,56 +51,86 @@ struct Jet {
   friend Jet operator*(Jet const& x, Jet const& y) {
     if (x.degree == 0) return x[0] * y;
     if (y.degree == 0) return y[0] * x;
-    return of(std::max(x.degree, y.degree), [&](int k) {
+    return grown(std::max(x.degree, y.degree), [&](Jet const&, int k) {
       R sum = x[0] * y[k];
       for (int j = 1; j <= k; ++j) sum += x[j] * y[k - j];
       return sum;
     });
   }
   friend Jet operator/(Jet const& x, Jet const& y) {
-    Jet q;
-    q.degree = std::max(x.degree, y.degree);
-    for (int k = 0; k <= q.degree; ++k) {
+    return grown(std::max(x.degree, y.degree), [&](Jet const& q, int k) {
       R sum = x[k];
       for (int j = 1; j <= k; ++j) sum = sum - y[j] * q[k - j];
-      q[k] = sum / y[0];
-    }
-    return q;
+      return R(sum / y[0]);
+    });
   }
   Jet& operator+=(Jet const& y) { return *this = *this + y; }
   friend bool operator<(Jet const& x, Jet const& y) { return x[0] < y[0]; }
   friend bool operator==(Jet const& x, Jet const& y) { return x[0] == y[0]; }
 
   friend Jet sqrt(Jet const& x) {
-    Jet r;
-    r.degree = x.degree;
-    r[0] = sqrt(x[0]);
-    for (int k = 1; k <= x.degree; ++k) {
+    return grown(x.degree, [&](Jet const& r, int k) {
+      if (k == 0) return R(sqrt(x[0]));
       R sum = x[k];
       for (int j = 1; j < k; ++j) sum = sum - r[j] * r[k - j];
-      r[k] = sum / (R(2.0) * r[0]);
-    }
-    return r;
+      return R(sum / (R(2.0) * r[0]));
+    });
   }
   friend Jet sin(Jet const& x) { return sin_and_cos(x).first; }
   friend Jet cos(Jet const& x) { return sin_and_cos(x).second; }
-  /// theta' = (x y' - y x') / (x^2 + y^2).
+  /// theta' (x^2 + y^2) = x y' - y x'.
   friend Jet atan2(Jet const& y, Jet const& x) {
-    Jet theta;
-    theta.degree = std::max(x.degree, y.degree);
-    theta[0] = atan2(y[0], x[0]);
-    if (theta.degree == 0) return theta;
-    Jet const slope = (x * y.derivative() - y * x.derivative()) / (x * x + y * y);
-    for (int k = 1; k <= theta.degree; ++k) theta[k] = slope[k - 1] / R(double(k));
-    return theta;
+    Jet const square = x * x + y * y;
+    return grown(std::max(x.degree, y.degree), [&](Jet const& theta, int k) {
+      if (k == 0) return R(atan2(y[0], x[0]));
+      R sum(0.0);
+      for (int j = 1; j <= k; ++j) sum += R(double(j)) * (x[k - j] * y[j] - y[k - j] * x[j]);
+      for (int j = 1; j < k; ++j) sum = sum - R(double(j)) * theta[j] * square[k - j];
+      return R(sum / (R(double(k)) * square[0]));
+    });
   }
 
-  /// The series of the time derivative, one coefficient short: the last is 0.
-  Jet derivative() const {
-    return of(degree, [&](int k) { return k < degree ? R(double(k + 1)) * (*this)[k + 1] : R(0.0); });
-  }
+  /// What the products, quotients and roots of one evaluation were. The next evaluation of the same expressions on jets
+  /// that agree with those but are longer goes on from there: n coefficients then cost n^2, not n^3.
+  class Memory {
+   public:
+    /// Jets of this thread remember from now on, until the end of this object; only one at a time.
+    Memory() { current = this; }
+    ~Memory() { current = nullptr; }
+    Memory(Memory const&) = delete;
+    Memory& operator=(Memory const&) = delete;
+    /// The same expressions follow once more.
+    void rewind() { next_ = 0; }
+
+   private:
+    friend Jet;
+    template <class F>
+    Jet continued(int degree, F const& coefficient) {
+      if (next_ == results_.size()) results_.emplace_back().degree = -1;
+      Jet& r = results_[next_++];
+      // A branch may have been taken the other way: what follows is another expression.
+      if (r.degree > degree || (r.degree >= 0 && !(r[0] == coefficient(r, 0)))) r.degree = -1;
+      for (int k = r.degree + 1; k <= degree; ++k) r[k] = coefficient(r, k);
+      r.degree = degree;
+      return r;
+    }
+    std::vector<Jet> results_;
+    std::size_t next_ = 0;
+  };
 
  private:
+  inline static thread_local Memory* current = nullptr;
+
+  /// coefficient(r, k) for k = 0 .. degree, from those of r that are there already.
+  template <class F>
+  static Jet grown(int degree, F const& coefficient) {
+    if (current) return current->continued(degree, coefficient);
+    Jet r;
+    r.degree = degree;
+    for (int k = 0; k <= degree; ++k) r[k] = coefficient(r, k);
+    return r;
+  }
+
   friend std::pair<Jet, Jet> sin_and_cos(Jet const& x) {
     Jet s, c;
     s.degree = c.degree = x.degree;

@@ -46,7 +46,7 @@ POLHODE_INLINE Vec3<S> mrp_rate_transposed(Vec3<S> const& sigma, Vec3<S> const& 
 }
 
 /// Formulation `mrp`: the projected sphere as it is.   chart sigma, velocity omega, sigma' = G(sigma) omega
-/// fails   near q = -1, where sigma goes to infinity
+/// fails   Status::diverged within 4e-6 rad of a full turn, q = -1, where sigma goes to infinity
 template <class S>
 struct Mrp : Flat<S, Vec3<S>>, Unconstrained<S, Vec3<S>> {
   static constexpr std::string_view name = "mrp";
@@ -59,6 +59,8 @@ struct Mrp : Flat<S, Vec3<S>>, Unconstrained<S, Vec3<S>> {
   }
   static POLHODE_INLINE Quat<S> attitude(Vec3<S> const& sigma) { return quaternion_of_mrp(sigma); }
   static POLHODE_INLINE Vec3<S> from_attitude(Quat<S> const& q) { return mrp_of(q); }
+  /// |sigma| = tan(angle / 4) above 1e6.
+  static POLHODE_INLINE bool singular(Vec3<S> const& sigma) { return S(1e12) < dot(sigma, sigma); }
 };
 
 /// Formulation `mrp_shadow`: sigma of the shorter way round, |sigma| <= 1 between steps. Stages may go beyond; the

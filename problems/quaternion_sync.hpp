@@ -70,7 +70,7 @@ struct SynchronisedCraft {
     out[0] = disagreement(x);
     out[1] = most - least;
     out[2] = least;
-    if (!null_vector.empty()) out[3] = lyapunov;
+    if (out.size() > 3) out[3] = lyapunov;
   }
   /// The largest |q_i - q_j| [1]. Above 200 craft twice the largest distance from the mean, which is linear in their
   /// number: never less than the exact value, and never more than twice it.
@@ -134,6 +134,9 @@ class QuaternionSync {
                    {"together", "quaternions stay within 1e-2; ours: from 11.58 s, 12.43 s (protocol13)", {}, "s"},
                    {"disagreement_end", "largest |q_i - q_j| at 20 s; ours: 2.609e-4, 3.810e-4 (protocol13)", {}, ""},
                    {"scalar_consensus", "scalar parts agree at the end, as in figures 1 and 2: within 1e-3", 0.0, ""},
+                   {"crossing_1", "craft 5's scalar part reaches 0; ours: .2116516346", {}, "s"},
+                   {"crossing_2", "craft 3's; ours: .4855026743", {}, "s"},
+                   {"crossing_3", "craft 1's; ours: 1.0050253857", {}, "s"},
                    {"trap", "protocol7 leaves attitudes sqrt(2) apart: the greatest departure from that", {}, ""}},
         // Whether a method stops where a scalar part crosses 0: same problem, more error.
         .driven = {"unlocated"}};
@@ -158,6 +161,13 @@ class QuaternionSync {
   }
   using Formulations = Types<Formulation<FlatQuaternion>, Formulation<S3>, Formulation<Mrp>>;
 
+  /// References in quadruple precision are for networks that fit into one.
+  std::string no_reference() const {
+    return start_.size() <= most_for_reference
+               ? ""
+               : "more than " + std::to_string(most_for_reference) + " craft: no reference in quadruple precision";
+  }
+  using TimedFormulations = Types<Formulation<FlatQuaternion>, Formulation<S3>, Formulation<Mrp>>;
   std::vector<Column> columns() const {
     std::vector<Column> list{{"disagreement", ""}, {"scalar_spread", ""}, {"scalar_min", ""}};
     if (!null_vector_.empty()) list.push_back({"lyapunov", ""});
@@ -177,6 +187,7 @@ class QuaternionSync {
 
  private:
   static constexpr int most_for_null_vector = 500;  ///< dense linear algebra
+  static constexpr std::size_t most_for_reference = 20;
 
   void check_counts() const {
     if (n_ != std::floor(n_) || n_ < 2 || n_ > 1e6)
@@ -267,6 +278,10 @@ inline std::vector<ClaimResult> QuaternionSync::claims(History const& run) const
   }
   std::optional<double> const together = history::below_from(run.times, apart, 1e-2);
   results.push_back({"together", together, {}, together ? against(*together, 11.58, 12.43, 0.02) : false});
+  constexpr std::array crossings{.2116516346, .4855026743, 1.0050253857};
+  for (std::size_t k = 0; k < crossings.size() && known && signs_ && run.events.size() == crossings.size(); ++k)
+    results.push_back(
+        {"crossing_" + std::to_string(k + 1), run.events[k], {}, std::fabs(run.events[k] - crossings[k]) <= 1e-9});
   if (to_the_end) {
     double const spread = run.column("scalar_spread").back();
     results.push_back({"disagreement_end", apart.back(), {}, against(apart.back(), 2.609e-4, 3.810e-4, 2e-6)});

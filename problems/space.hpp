@@ -32,7 +32,7 @@ using Velocity = typename M::Velocity;
 
 /// `same_as`, not `convertible_to`: a wrong size or frame must be an error here, not a conversion.
 template <class M>
-concept Space = Scalar<typename M::Scalar> && requires(Point<M> x, Chart<M> u, Velocity<M> v) {
+concept SmallSpace = Scalar<typename M::Scalar> && requires(Point<M> x, Chart<M> u, Velocity<M> v) {
   { M::centre(x) } -> std::same_as<Chart<M>>;
   { M::retract(x, u) } -> std::same_as<Point<M>>;
   { M::local(x, x) } -> std::same_as<Chart<M>>;
@@ -44,13 +44,32 @@ concept Space = Scalar<typename M::Scalar> && requires(Point<M> x, Chart<M> u, V
   { M::flat } -> std::convertible_to<bool>;
   { M::constrained } -> std::convertible_to<bool>;
 };
+/// Many bodies, each on a space Factor: power.hpp.
+template <class M>
+concept PowerSpace = requires {
+  typename M::Factor;
+  { M::bodies } -> std::convertible_to<int>;
+};
+/// What methods run on.
+template <class M>
+concept Space = SmallSpace<M> || PowerSpace<M>;
 /// One global chart: what CVODE, Odeint and other libraries can be given.
 template <class M>
 concept FlatSpace = Space<M> && M::flat;
 
+/// Points are replaced by equivalent ones between steps: settle(x) says whether it did, and methods restart then.
+template <class M>
+concept Settling = requires(Point<M> x) {
+  { M::settle(x) } -> std::same_as<bool>;
+};
+/// Coordinates that end: singular(x) is true where no step can go on.
+template <class M>
+concept Singular = requires(Point<M> const x) {
+  { M::singular(x) } -> std::same_as<bool>;
+};
 /// A description of attitude; any of them serves any problem. `name` is the formulation's word on the command line.
 template <class A>
-concept Attitude = Space<A> && requires(Point<A> x, Quat<typename A::Scalar> q) {
+concept Attitude = SmallSpace<A> && requires(Point<A> x, Quat<typename A::Scalar> q) {
   { A::attitude(x) } -> std::same_as<Quat<typename A::Scalar>>;
   { A::from_attitude(q) } -> std::same_as<Point<A>>;
   { A::name } -> std::convertible_to<std::string_view>;
@@ -233,7 +252,7 @@ struct FlatRotation : Flat<S, Mat3<S>>, OrthogonalMatrix<S> {
 };
 
 /// Two spaces as one; the defect is the greater of the two.
-template <Space A, Space B>
+template <SmallSpace A, SmallSpace B>
 struct Product {
   using Scalar = typename A::Scalar;
   using Point = Pair<typename A::Point, typename B::Point>;
@@ -262,6 +281,8 @@ struct Product {
   }
   static POLHODE_INLINE Scalar defect(Point const& x) { return max_of(A::defect(x.first), B::defect(x.second)); }
   static POLHODE_INLINE Scalar project(Point& x) { return max_of(A::project(x.first), B::project(x.second)); }
+  static POLHODE_INLINE bool settle(Point& x) requires Settling<A> { return A::settle(x.first); }
+  static POLHODE_INLINE bool singular(Point const& x) requires Singular<A> { return A::singular(x.first); }
 };
 
 /// The state of a rigid body: attitude (first) and body rate omega [rad/s] (second).

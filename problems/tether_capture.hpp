@@ -41,6 +41,7 @@ class TetherCapture {
                    {"alpha_end", "the target points along the tether within 50 s (below 1 deg)", {}, "rad"},
                    {"alpha_maxima", "number of interior maxima of the angle: one rise, or waves", {}, ""},
                    {"energy_c", "thruster effort: the integral of M_u.M_u", {}, "N^2 m^2 s"}},
+        .step = 0.05,  // divides the sample period
         // The paper's own way, and a trap: refining the step changes the problem, and the error does not vanish.
         .driven = {"coupled"}};
     return facts;

@@ -68,17 +68,32 @@ template <class V>
 POLHODE_INLINE void add(V& u, V const& k) {
   V::each([&](auto& a, auto const& b) POLHODE_LAMBDA { a += b; }, u, k);
 }
+/// u = c k.
+template <class V, class C>
+POLHODE_INLINE void assign_scaled(V& u, C const& c, V const& k) {
+  V::each([&](auto& a, auto const& b) POLHODE_LAMBDA { a = c * b; }, u, k);
+}
+/// u = c u.
+template <class V, class C>
+POLHODE_INLINE void scale(V& u, C const& c) {
+  V::each([&](auto& a) POLHODE_LAMBDA { a = c * a; }, u);
+}
 /// c k.
 template <class V, class C>
 POLHODE_INLINE V scaled(C const& c, V const& k) {
   V u;
-  V::each([&](auto& a, auto const& b) POLHODE_LAMBDA { a = c * b; }, u, k);
+  assign_scaled(u, c, k);
   return u;
+}
+/// Every component of u becomes `value`.
+template <class V>
+POLHODE_INLINE void fill(V& u, double value) {
+  V::each([&](auto& a) POLHODE_LAMBDA { a = std::decay_t<decltype(a)>(value); }, u);
 }
 template <class V>
 POLHODE_INLINE V zero() {
   V u;
-  V::each([](auto& a) POLHODE_LAMBDA { a = std::decay_t<decltype(a)>(0.0); }, u);
+  fill(u, 0.0);
   return u;
 }
 /// Greatest |a - b| over components.
@@ -86,6 +101,13 @@ template <class S, class V>
 POLHODE_INLINE S distance(V const& u, V const& v) {
   S m(0.0);
   V::each([&](auto const& a, auto const& b) POLHODE_LAMBDA { m = max_of(m, abs_of(S(a - b))); }, u, v);
+  return m;
+}
+/// Greatest |a| over components.
+template <class S, class V>
+POLHODE_INLINE S largest(V const& u) {
+  S m(0.0);
+  V::each([&](auto const& a) POLHODE_LAMBDA { m = max_of(m, abs_of(a)); }, u);
   return m;
 }
 template <class V>

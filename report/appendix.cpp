@@ -52,6 +52,21 @@ std::string timing_note(Facts const& facts) {
                      low == high ? std::to_string(low) : fmt::format("{} to {}", low, high), machine);
 }
 
+/// Runs that ended well, with something to be known about them: warnings, missing references.
+void add_remarks(Document& document, Facts const& facts) {
+  std::map<std::pair<std::string, std::string>, std::size_t> remarks;
+  for (Instance const& instance : facts.instances)
+    for (Record const* run : instance.runs)
+      if (is_ok(*run) && !run->reason.empty()) ++remarks[{instance.label, run->reason}];
+  if (remarks.empty()) return;
+  Table table{.name = "remarks",
+              .caption = "Runs that ended well, and what should be known about them.",
+              .columns = {{"problem"}, {"remark"}, {"runs", true}},
+              .rows = {}};
+  for (auto const& [key, n] : remarks) table.rows.push_back({key.first, key.second, std::to_string(n)});
+  document.add(std::move(table));
+}
+
 void add_failures(Document& document, Facts const& facts) {
   document.section("Failures and refusals");
   std::map<FailureKey, Failures> groups;
@@ -91,6 +106,7 @@ void add_failures(Document& document, Facts const& facts) {
   } else {
     document.say(facts.runs.empty() ? "There are no runs, hence no failures." : "Every run ended with status ok.");
   }
+  add_remarks(document, facts);
   auto const& unfinished = facts.contents.unfinished;
   if (!unfinished.empty()) {
     document.say(fmt::format("{} begun and never finished, which means that the process died or is still at work: {}.",

@@ -22,9 +22,10 @@ std::vector<CellUnderTest> every_combination() {
     for (std::string const& formulation : problem.formulations)
       for (IntegratorWord const& method : vocabulary().integrators)
         for (std::string const& policy : vocabulary().policies) {
-          CellUnderTest cell = a_cell(problem.name, formulation, method.name).until(3);
+          CellUnderTest cell =
+              a_cell(problem.name, formulation, method.name).of_variant(test::calm_variant(problem.name)).until(3);
           cell.cell.policy = policy;
-          if (method.fixed) cells.push_back(cell.with_h(0.1));
+          if (method.fixed) cells.push_back(cell.with_h(problem.step));
           if (method.adaptive) cells.push_back(cell.with_rtol(1e-8));
         }
   return cells;
@@ -92,13 +93,31 @@ TEST(Catalogue, EveryMethodSuitsSomeFormulation) {
 
 // ---- Timed runs -----------------------------------------------------------------------------------------------------
 
-/// Attitude and rate where a timed solve ended, from its numbers in storage order.
-std::vector<double> row_of(std::vector<double> const& numbers) {
-  if (numbers.size() == 7) return numbers;
-  Mat3<double> m;
-  load(m, numbers.data());
-  Quat<double> const q = quaternion(m);
-  return {q.x, q.y, q.z, q.w, numbers[9], numbers[10], numbers[11]};
+/// Keeps the last state of a run, in storage order.
+template <Space M>
+class EndWatch final : public bench::Watch<M> {
+ public:
+  std::vector<double> state;
+  void at_stop(bench::Stop const&, Point<M> const& x) override {
+    state.resize(std::size_t(size_of(x)));
+    store(x, state.data());
+  }
+  void after_step(double, Point<M> const&, Projections const&) override {}
+};
+/// Where the erased, counted run of a prepared cell ends.
+std::vector<double> end_of(bench::PreparedCell const& prepared) {
+  std::vector<double> end;
+  std::visit(
+      [&]<Space M>(std::unique_ptr<Erased<M>> const& field) {
+        for (bench::MethodOn<M> const& method : bench::all_methods_on<M>()) {
+          if (method.info->name != prepared.cell.integrator) continue;
+          EndWatch<M> watch;
+          method.solve(*field, prepared.plan, watch);
+          end = watch.state;
+        }
+      },
+      prepared.problem->in(prepared.cell.formulation));
+  return end;
 }
 
 TEST(TimedRuns, EndWhereTheMeasuredOnesEndToTheLastBit) {
@@ -107,11 +126,12 @@ TEST(TimedRuns, EndWhereTheMeasuredOnesEndToTheLastBit) {
     auto const prepared = bench::prepare(cell.cell);
     if (!prepared.refusal.empty()) continue;
     auto const timed = prepared.problem->timed(cell.cell.formulation, cell.cell.integrator, prepared.plan);
-    ASSERT_TRUE(timed) << text_of(cell);
+    if (!timed) {  // some formulations are not raced; in the simplest everything is
+      EXPECT_NE(cell.cell.formulation, "quaternion") << text_of(cell);
+      continue;
+    }
     ASSERT_EQ(timed->solve(), Status::ok) << text_of(cell);
-    std::vector<double> expected = cell.measured().history.rows.back();
-    expected.resize(7);  // without the problem's own columns
-    EXPECT_EQ(row_of(timed->end_state()), expected) << text_of(cell);
+    EXPECT_EQ(timed->end_state(), end_of(prepared)) << text_of(cell);
     ++compared;
   }
   EXPECT_GT(compared, 100);
@@ -123,6 +143,7 @@ TEST(TimedRuns, EverySolveIsTheSame) {
     auto const prepared = bench::prepare(cell.cell);
     if (!prepared.refusal.empty()) continue;
     auto const timed = prepared.problem->timed(cell.cell.formulation, cell.cell.integrator, prepared.plan);
+    if (!timed) continue;
     ASSERT_EQ(timed->solve(), Status::ok) << text_of(cell);
     std::vector<double> const first = timed->end_state();
     ASSERT_EQ(timed->solve(), Status::ok) << text_of(cell);
@@ -226,9 +247,14 @@ std::vector<std::string> variants_of(ProblemWord const& problem) {
 TEST(References, AreCertifiedToTwentyEightDigits) {
   for (ProblemWord const& problem : vocabulary().problems)
     for (std::string const& variant : variants_of(problem)) {
-      auto const cell = a_cell(problem.name, problem.formulations.front(), "gauss2").of_variant(variant).with_h(0.1);
+      auto const cell =
+          a_cell(problem.name, problem.formulations.front(), "gauss2").of_variant(variant).with_h(problem.step);
       bool const default_variant = variant.empty();  // its whole horizon; 5 s tell of the others
       auto const record = (default_variant ? cell : cell.until(5)).measured().record;
+      if (!bench::prepare(cell.cell).problem->no_reference().empty()) {
+        EXPECT_FALSE(record.reference_bar) << problem.name << " " << variant;
+        continue;
+      }
       ASSERT_TRUE(record.reference_bar) << problem.name << " " << variant;
       EXPECT_LT(*record.reference_bar, 1e-28) << problem.name << " " << variant;
       EXPECT_GT(*record.reference_bar, 0) << problem.name << " " << variant << ": two methods agree to the last bit?";

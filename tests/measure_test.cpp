@@ -36,7 +36,7 @@ UsableReference const& its_reference() {
   return reference;
 }
 Metrics metrics_of_the_ball(bool torque_free = true) {
-  return {its_reference(), turning_ball().body(), torque_free, t_end};
+  return {&its_reference(), torque_free ? turning_ball().body() : nullptr, t_end};
 }
 
 /// Its attitude: half the angle in the quaternion.
@@ -50,12 +50,18 @@ Quat<Quad> turned(double t, double angle) {
 }
 
 /// What a run shows in this state; the drift is told as the harness tells it.
-Sight sight(double t, Quat<Quad> const& q, Vec3<Quad> const& w = omega) {
-  return {.t = t, .q = q, .omega = w, .drift = double(dot(q, q) - 1)};
+struct Seen {
+  double t;
+  BodySight body;
+  double raw_defect = 0;
+  operator Sight() const { return {.t = t, .bodies = std::span(&body, 1), .raw_defect = raw_defect}; }
+};
+Seen sight(double t, Quat<Quad> const& q, Vec3<Quad> const& w = omega) {
+  return {.t = t, .body = {.q = q, .omega = w, .drift = double(dot(q, q) - 1)}};
 }
-Sight drifting(double t, double drift) {
-  Sight seen = sight(t, exact(t));
-  seen.drift = drift;
+Seen drifting(double t, double drift) {
+  Seen seen = sight(t, exact(t));
+  seen.body.drift = drift;
   return seen;
 }
 
@@ -124,7 +130,7 @@ TEST(NormDrift, ItsMeanSquareIsOverTimeNotOverSteps) {
 
 TEST(NormDrift, RawIsBeforeProjection) {
   auto const record = record_of([](double t) {
-    Sight seen = drifting(t, 1e-16);
+    Seen seen = drifting(t, 1e-16);
     seen.raw_defect = 3e-9;
     return seen;
   });
@@ -326,8 +332,8 @@ TEST(DriftSeries, HasAtMost64MomentsInOrderUpToTheEnd) {
     SCOPED_TRACE(n);
     Metrics metrics = metrics_of_the_ball();
     for (int k = 0; k <= n; ++k) {
-      Sight seen = sight(t_end * k / n, turned(t_end * k / n, small));
-      seen.drift = -1e-9 * k;
+      Seen seen = sight(t_end * k / n, turned(t_end * k / n, small));
+      seen.body.drift = -1e-9 * k;
       seen.raw_defect = k > n / 2 ? 1e-3 : 0;
       metrics.see(seen);
     }

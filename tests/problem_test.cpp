@@ -257,7 +257,7 @@ double error_of(bool announced, int n) {
   Vec3<double> x = turn.initial();
   Times seen;
   auto const stops = bench::stops_of(schedule);
-  EXPECT_EQ(bench::run_from_stop_to_stop(*problem, stepper, x, stops, 1.0 / n, seen), Status::ok);
+  EXPECT_EQ(bench::RunLoop(*problem, stepper, 1.0 / n, true).go(x, stops, seen), Status::ok);
   EXPECT_EQ(seen.times, announced ? (std::vector<double>{0, event, 1}) : (std::vector<double>{0, 1}));
   EXPECT_EQ(stepper.work().steps, announced ? n + 1 : n) << "each piece ends with a step of its own";
   return std::hypot(x.x - std::cos(Turn::angle), x.y - std::sin(Turn::angle));

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <thread>
+
 #include <cmath>
 
 #include "problems/dual.hpp"
@@ -176,7 +178,28 @@ TEST(Jets, ProductsAndConstants) {
   EXPECT_EQ((J(2.0) * line(3, 1)).degree, degree);
   EXPECT_TRUE((J(2.0) * line(3, 1))[1] == 2);
   EXPECT_TRUE(square.at(Quad(0.5)) == Quad(12.25));
-  EXPECT_TRUE(square.derivative()[0] == 6 && square.derivative()[1] == 2 && square.derivative()[degree] == 0);
+}
+
+// What taylor.hpp does: the same expressions on ever longer jets.
+TEST(Jets, RememberedResultsAreThoseOfAFreshStart) {
+  auto const expressions = [](J const& x) {
+    J const y = x * x / (J(2.0) + x) - sqrt(J(3.0) + x * x);
+    return atan2(y, J(1.0) + x) + (x[0] > 0.5 ? x * y : y * y / x);
+  };
+  J x(Quad(0.25));
+  for (int k = 1; k <= degree; ++k) x[k] = Quad(1.0) / (3 + k * k);
+  typename J::Memory memory;
+  for (Quad start : {Quad(0.25), Quad(0.75), Quad(0.25)})  // other values, then the other branch: nothing old is used
+    for (int k = 1; k <= degree; ++k) {
+      x[0] = start;
+      x.degree = k;
+      memory.rewind();
+      J const remembered = expressions(x);
+      J fresh;
+      std::thread([&] { fresh = expressions(x); }).join();  // another thread has no memory
+      ASSERT_EQ(remembered.degree, fresh.degree);
+      for (int j = 0; j <= k; ++j) EXPECT_TRUE(remembered[j] == fresh[j]) << j << " of " << k;
+    }
 }
 
 TEST(Jets, ComparisonsSeeTheConstantTerm) {

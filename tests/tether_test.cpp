@@ -56,7 +56,7 @@ TEST_P(TetherAt50s, TheReferenceMeetsEveryPrintedDigit) {
   auto const prepared =
       bench::prepare(a_cell("tether_capture", "s3", "cf4").of_variant(GetParam().variant).with_h(0.1).cell);
   auto const reference = bench::Reference::solve(*prepared.problem, prepared.schedule);
-  bench::QuadState const end = reference.at(50);
+  bench::QuadBody const end = reference.at(50).at(0);
   expect_end(GetParam(),
              {double(end.q.x), double(end.q.y), double(end.q.z), double(end.q.w), double(end.omega.x),
               double(end.omega.y), double(end.omega.z)},

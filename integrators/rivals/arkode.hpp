@@ -36,13 +36,13 @@ class ErkStepper {
   Projections projections() const { return {}; }
 
  private:
-  ErkStepper(int order, P const& problem) {
-    y_.reset(N_VNew_Serial(Chart<M>::size, context_.get()));
+  ErkStepper(int order, P const& problem) : field_(new LibraryField<P>(problem)) {
+    y_.reset(N_VNew_Serial(field_->size(), context_.get()));
     if (!y_) throw std::bad_alloc();
     N_VConst(0, y_.get());
     memory_.reset(ERKStepCreate(field, 0, y_.get(), context_.get()));
     if (!memory_) throw std::bad_alloc();
-    require(ERKStepSetUserData(memory_.get(), const_cast<P*>(&problem)));
+    require(ERKStepSetUserData(memory_.get(), field_.get()));
     require(ERKStepSetOrder(memory_.get(), order));
     require(ERKStepSetMaxNumSteps(memory_.get(), most_steps));
   }
@@ -72,10 +72,8 @@ class ErkStepper {
     sum.steps += steps;
     sum.rejected += failures;
   }
-  static int field(double t, N_Vector y, N_Vector dydt, void* problem) {
-    Point<M> x;
-    load(x, N_VGetArrayPointer(y));
-    store(M::rate(x, (*static_cast<P const*>(problem))(t, x)), N_VGetArrayPointer(dydt));
+  static int field(double t, N_Vector y, N_Vector dydt, void* field) {
+    (*static_cast<LibraryField<P> const*>(field))(t, N_VGetArrayPointer(y), N_VGetArrayPointer(dydt));
     return 0;
   }
 
@@ -90,6 +88,7 @@ class ErkStepper {
     if (SUNContext_Create(nullptr, &context) != 0) throw std::bad_alloc();
     return context;
   }
+  std::unique_ptr<LibraryField<P>> field_;
   std::unique_ptr<std::remove_pointer_t<SUNContext>, Free> context_{make_context()};
   std::unique_ptr<std::remove_pointer_t<N_Vector>, Free> y_;
   std::unique_ptr<void, Free> memory_;
@@ -117,6 +116,7 @@ struct ArkodeErk {
                        "first-same-as-last (its issue 311): order 7 instead of 8"
                      : "its default safety factors are cautious",
       .no_projection = "ARKODE keeps its own state: projecting it between steps means starting anew",
+      .locates_events = false,  // ERKStep finds roots, too, but a new start costs its step control the step size
       .not_built = sundials_not_built};
 #ifdef POLHODE_HAS_SUNDIALS
   template <Problem P>

@@ -3,7 +3,7 @@
 /// re-initialises at the next call. double, flat coordinates; rtol, atol per component.
 /// Adams runs with fixed-point iteration, BDF with Newton and a dense difference-quotient Jacobian: CVODE's guide,
 /// ch. 4. Source: Hindmarsh et al. (2005), ACM TOMS 31, 363; SUNDIALS 6.4
-#include "integrators/integrator.hpp"
+#include "integrators/rivals/library_field.hpp"
 
 #ifdef POLHODE_HAS_SUNDIALS
 #include <cvode/cvode.h>
@@ -15,6 +15,8 @@
 
 #include <memory>
 #include <new>
+#include <span>
+#include <vector>
 #endif
 
 namespace polhode {
@@ -46,6 +48,15 @@ class CvodeMemory {
     if (!good) throw std::bad_alloc();
   }
 
+  /// From now on steps end on the zeros of `count` functions. Throws std::bad_alloc.
+  void find_roots(int count, CVRootFn functions) {
+    found_.assign(std::size_t(count), 0);
+    roots_.reserve(std::size_t(count));
+    if (CVodeRootInit(memory_.get(), count, functions) != CV_SUCCESS) throw std::bad_alloc();
+    CVodeSetNoInactiveRootWarn(memory_.get());
+  }
+  std::vector<int> const& roots() const { return roots_; }
+
   /// CVODE's own projection, for BDF: called after every step. Throws std::bad_alloc.
   void project_with(CVProjFn project) {
     if (CVodeSetProjFn(memory_.get(), project) != CV_SUCCESS) throw std::bad_alloc();
@@ -60,9 +71,15 @@ class CvodeMemory {
       CVodeReInit(memory_.get(), t, y_.get());
     }
     CVodeSetStopTime(memory_.get(), t_end);
+    roots_.clear();
     switch (CVode(memory_.get(), t_end, y_.get(), &t, task)) {
       case CV_SUCCESS:
       case CV_TSTOP_RETURN:
+        return Status::ok;
+      case CV_ROOT_RETURN:
+        CVodeGetRootInfo(memory_.get(), found_.data());
+        for (std::size_t k = 0; k < found_.size(); ++k)
+          if (found_[k] != 0) roots_.push_back(int(k));
         return Status::ok;
       case CV_TOO_MUCH_WORK:
         return Status::max_steps;
@@ -121,6 +138,7 @@ class CvodeMemory {
   Owned<SUNNonlinearSolver> fixed_point_;
   std::unique_ptr<void, Free> memory_;
   bool fresh_ = true;
+  std::vector<int> found_, roots_;  ///< CVODE's flags; the functions that are zero now
   Work before_;
 };
 
@@ -130,7 +148,8 @@ class CvodeStepper {
 
  public:
   CvodeStepper(int multistep, P const& problem, Adaptive control, NormPolicy policy)
-      : user_(new User{&problem, {}}), memory_(multistep, control, field, user_.get(), Chart<M>::size) {
+      : user_(new User{LibraryField<P>(problem), {}}),
+        memory_(multistep, control, field, user_.get(), user_->field.size()) {
     if (policy == NormPolicy::native) memory_.project_with(project);
   }
 
@@ -141,10 +160,16 @@ class CvodeStepper {
   Work work() const { return memory_.work(); }
   Projections projections() const { return user_->projections; }
 
+  /// CVODE's own root finding: a step ends on the zero of a switching function.
+  void find_roots() requires SwitchingProblem<P> {
+    memory_.find_roots(user_->field.problem().state_events(), switching_functions);
+  }
+  std::vector<int> const& roots() const requires SwitchingProblem<P> { return memory_.roots(); }
+
  private:
   /// What CVODE hands back to our callbacks.
   struct User {
-    P const* problem;
+    LibraryField<P> field;
     Projections projections;
   };
 
@@ -155,21 +180,23 @@ class CvodeStepper {
     return status == Status::ok && !all_finite(x) ? Status::diverged : status;
   }
   static int field(double t, N_Vector y, N_Vector dydt, void* user) {
-    Point<M> x;
-    load(x, N_VGetArrayPointer(y));
-    store(M::rate(x, (*static_cast<User const*>(user)->problem)(t, x)), N_VGetArrayPointer(dydt));
+    static_cast<User const*>(user)->field(t, N_VGetArrayPointer(y), N_VGetArrayPointer(dydt));
+    return 0;
+  }
+  static int switching_functions(double t, N_Vector y, double* values, void* user) requires SwitchingProblem<P> {
+    static_cast<User const*>(user)->field.event_values(t, N_VGetArrayPointer(y), values);
     return 0;
   }
   /// correction = projected y - y. The error estimate is left as it is: projecting it, too, made the attitude error up
   /// to 14 times worse at equal tolerance.
   static int project(double, N_Vector y, N_Vector correction, double, N_Vector, void* user) {
-    Point<M> x;
-    load(x, N_VGetArrayPointer(y));
-    Point<M> projected = x;
-    double const defect = M::defect(x);
-    static_cast<User*>(user)->projections.note(defect, M::project(projected));
-    add(projected, -1.0, x);
-    store(projected, N_VGetArrayPointer(correction));
+    User& u = *static_cast<User*>(user);
+    N_VScale(1, y, correction);
+    u.field.change(N_VGetArrayPointer(correction), [&](Point<M>& x) {
+      double const defect = M::defect(x);
+      u.projections.note(defect, M::project(x));
+    });
+    N_VLinearSum(1, correction, -1, y, correction);
     return 0;
   }
 

@@ -11,23 +11,35 @@
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta_fehlberg78.hpp>
 #include <optional>
+#include <vector>
 
-#include "integrators/integrator.hpp"
+#include "integrators/rivals/library_field.hpp"
 
 namespace polhode {
+
+/// Odeint's state: an array for one body, a vector for many.
+template <Space M>
+struct OdeintState {
+  using type = std::vector<double>;
+  static type of(Point<M> const& x) {
+    type y(std::size_t(size_of(x)));
+    store(x, y.data());
+    return y;
+  }
+};
+template <SmallSpace M>
+struct OdeintState<M> {
+  using type = std::array<double, std::size_t(Chart<M>::size)>;
+  static type of(Point<M> const&) { return {}; }
+};
 
 /// A problem as Odeint's system function.
 template <Problem P>
 struct OdeintSystem {
-  using M = typename P::Space;
-  using State = std::array<double, std::size_t(Chart<M>::size)>;
-  P const* problem;
+  using State = typename OdeintState<typename P::Space>::type;
+  LibraryField<P> field;
 
-  void operator()(State const& y, State& dydt, double t) const {
-    Point<M> x;
-    load(x, y.data());
-    store(M::rate(x, (*problem)(t, x)), dydt.data());
-  }
+  void operator()(State const& y, State& dydt, double t) const { field(t, y.data(), dydt.data()); }
 };
 
 /// Fixed steps of a one-step method of Odeint.
@@ -37,16 +49,22 @@ class OdeintFixed {
 
  public:
   OdeintFixed(P const& problem, FixedStep control, NormPolicy policy)
-      : system_{&problem}, h_(control.h), policy_(policy) {}
+      : system_{LibraryField<P>(problem)}, y_(OdeintState<M>::of(problem.initial())), h_(control.h), policy_(policy) {}
 
   Status advance(Point<M>& x, double t, double t_end) {
-    typename OdeintSystem<P>::State y;
-    store(x, y.data());
+    store(x, y_.data());
     auto const whole = std::int64_t(std::floor((t_end - t) / h_ + 1e-9));
     double const reached = t + double(whole) * h_;
-    for (std::int64_t i = 0; i < whole; ++i) step(y, t + double(i) * h_, h_);
-    if ((t_end - reached) / h_ > 1e-9) step(y, reached, t_end - reached);
-    load(x, y.data());
+    for (std::int64_t i = 0; i < whole; ++i) step(t + double(i) * h_, h_);
+    if ((t_end - reached) / h_ > 1e-9) step(reached, t_end - reached);
+    load(x, y_.data());
+    return all_finite(x) ? Status::ok : Status::diverged;
+  }
+  /// One step to t_end, however long.
+  Status one_step(Point<M>& x, double t, double t_end) {
+    store(x, y_.data());
+    step(t, t_end - t);
+    load(x, y_.data());
     return all_finite(x) ? Status::ok : Status::diverged;
   }
   void restart() { stepper_.emplace(); }
@@ -54,18 +72,16 @@ class OdeintFixed {
   Projections projections() const { return projections_; }
 
  private:
-  void step(typename OdeintSystem<P>::State& y, double t, double h) {
-    stepper_->do_step(system_, y, t, h);
+  void step(double t, double h) {
+    stepper_->do_step(system_, y_, t, h);
     ++work_.steps;
     if (policy_ == NormPolicy::none) return;
-    Point<M> x;
-    load(x, y.data());
-    projections_.template apply<M>(x, policy_);
-    store(x, y.data());
+    system_.field.change(y_.data(), [&](Point<M>& x) { projections_.template apply<M>(x, policy_); });
     stepper_.emplace();  // a method that reuses its last slope must not: the state moved
   }
 
   OdeintSystem<P> system_;
+  typename OdeintSystem<P>::State y_;
   double h_;
   NormPolicy policy_;
   std::optional<OdeintStepper> stepper_{std::in_place};  // made anew in place: Odeint never initialises its buffers
@@ -80,7 +96,11 @@ class OdeintControlled {
 
  public:
   OdeintControlled(P const& problem, Adaptive control, NormPolicy policy)
-      : system_{&problem}, control_(control), policy_(policy), stepper_(make()) {}
+      : system_{LibraryField<P>(problem)},
+        y_(OdeintState<M>::of(problem.initial())),
+        control_(control),
+        policy_(policy),
+        stepper_(make()) {}
 
   Status advance(Point<M>& x, double t, double t_end) {
     while (t < t_end)
@@ -88,18 +108,17 @@ class OdeintControlled {
     return Status::ok;
   }
   Status step(Point<M>& x, double& t, double t_end) {
-    typename OdeintSystem<P>::State y;
-    store(x, y.data());
+    store(x, y_.data());
     for (int trial = 0; trial < most_trials; ++trial) {
       double h = std::min(h_, t_end - t);
       bool const last = h >= t_end - t;
       double const tried = h;
-      auto const result = stepper_.try_step(system_, y, t, h);
+      auto const result = stepper_.try_step(system_, y_, t, h);
       if (result == boost::numeric::odeint::success) {
         ++work_.steps;
         if (last) t = t_end;
         if (!last || h < tried || tried == h_) h_ = h;  // a step cut short says little about the next one
-        load(x, y.data());
+        load(x, y_.data());
         if (policy_ != NormPolicy::none) {
           projections_.template apply<M>(x, policy_);
           stepper_ = make();
@@ -133,6 +152,7 @@ class OdeintControlled {
   }
 
   OdeintSystem<P> system_;
+  typename OdeintSystem<P>::State y_;
   Adaptive control_;
   NormPolicy policy_;
   ControlledStepper stepper_;
@@ -159,7 +179,8 @@ using Fehlberg78 = odeint::runge_kutta_fehlberg78<State<P>>;
 /// Eight steps of Adams-Bashforth-Moulton need eight starting values as good as themselves: from Fehlberg's pair, not
 /// from the default, RK4, which would hold the method down to order 4 after every restart.
 template <Problem P>
-using Abm8 = odeint::adams_bashforth_moulton<8, State<P>, double, State<P>, double, odeint::array_algebra,
+using Abm8 = odeint::adams_bashforth_moulton<8, State<P>, double, State<P>, double,
+                                             typename odeint::algebra_dispatcher<State<P>>::algebra_type,
                                              odeint::default_operations, odeint::initially_resizer, Fehlberg78<P>>;
 template <Problem P>
 using BulirschStoer = odeint::bulirsch_stoer<State<P>>;
@@ -183,7 +204,7 @@ struct RunsBoth : RunsFixedSteps<Pair> {
 };
 
 constexpr MethodInfo info(std::string_view name, int order, std::string_view source, std::string_view pitfall = "",
-                          std::string_view no_projection = "") {
+                          std::string_view no_projection = "", bool one_step = true) {
   return {.name = name,
           .family = Family::library,
           .order = order,
@@ -191,7 +212,8 @@ constexpr MethodInfo info(std::string_view name, int order, std::string_view sou
           .rival = true,
           .source = source,
           .pitfall = pitfall,
-          .no_projection = no_projection};
+          .no_projection = no_projection,
+          .locates_events = one_step};
 }
 }  // namespace odeint_detail
 
@@ -222,9 +244,10 @@ struct OdeintBulirschStoer {
   }
 };
 struct OdeintAbm8 : odeint_detail::RunsFixedSteps<odeint_detail::Abm8> {
-  static constexpr MethodInfo info = odeint_detail::info(
-      "odeint_abm8", 8, "Boost.Odeint 1.74, adams_bashforth_moulton<8>, started by Fehlberg 7(8)",
-      "eight starting steps after every restart", "projection would break the history that the next step extrapolates");
+  static constexpr MethodInfo info =
+      odeint_detail::info("odeint_abm8", 8, "Boost.Odeint 1.74, adams_bashforth_moulton<8>, started by Fehlberg 7(8)",
+                          "eight starting steps after every restart",
+                          "projection would break the history that the next step extrapolates", false);
 };
 
 }  // namespace polhode

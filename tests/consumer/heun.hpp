@@ -27,6 +27,7 @@ struct LieMidpoint {
                                    .preserves = keeps_norm,
                                    .source = "Munthe-Kaas (1995), BIT 35, 572"};
   template <Problem P>
+    requires SmallSpace<typename P::Space>  // one body: points and velocities are values
   auto bind(P const& p, FixedStep control, NormPolicy policy) const {
     return Fixed<LieMidpoint, P>(*this, p, control, policy);
   }
