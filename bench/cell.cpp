@@ -232,6 +232,7 @@ PreparedCell prepare(results::Cell cell, double every) {
 }
 
 FoundReference References::of(PreparedCell const& prepared) {
+  if (!prepared.reference) return {};
   if (std::string const why = prepared.problem->no_reference(); !why.empty()) return {nullptr, why};
   std::shared_ptr<Slot> slot;
   {

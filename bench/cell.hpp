@@ -22,7 +22,8 @@ struct PreparedCell {
   std::unique_ptr<ChosenProblem> problem;
   Plan plan;
   Schedule schedule;
-  std::string refusal;  ///< why it does not run; empty if it does
+  std::string refusal;    ///< why it does not run; empty if it does
+  bool reference = true;  ///< errors are wanted
 };
 
 /// Checks words and numbers and builds the problem. every [s]: output times, 0 for none but the end.

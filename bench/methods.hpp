@@ -7,6 +7,7 @@
 
 #include "bench/run_loop.hpp"
 #include "integrators/catalog.hpp"
+#include "problems/erased.hpp"
 
 namespace polhode::bench {
 

@@ -1,6 +1,7 @@
 /// Everything that one problem of the catalogue needs compiled, apart from its timed solves.
 /// POLHODE_PROBLEM is the problem's type; the build makes one unit for each line of problems/catalog.hpp.
 #include "bench/problems.hpp"
+#include "problems/catalog.hpp"
 
 namespace polhode::bench {
 namespace {

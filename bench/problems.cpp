@@ -1,4 +1,5 @@
 #include "bench/problems.hpp"
+#include "problems/catalog.hpp"
 
 #include <stdexcept>
 

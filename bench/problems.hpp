@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bench/methods.hpp"
-#include "problems/catalog.hpp"
+#include "problems/definition.hpp"
 #include "problems/jet.hpp"
 
 namespace polhode::bench {

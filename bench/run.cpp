@@ -57,6 +57,7 @@ std::vector<Task> prepare_all(Suite const& suite, std::string const& filter) {
     } catch (UsageError const& error) {
       throw SuiteError(fmt::format("suite '{}': {}", suite.name, error.what()));
     }
+    task.prepared.reference = wanted.reference;
     task.id = results::cell_id(task.prepared.cell);
     task.keep_history = std::find(wanted.tags.begin(), wanted.tags.end(), "history") != wanted.tags.end();
     // A cell with the horizon written out and one that takes the default are the same.

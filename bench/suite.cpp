@@ -291,7 +291,7 @@ std::vector<Cell> read_sweep(Toml const& sweep, Vocabulary const& vocabulary,
                              std::vector<std::filesystem::path>& files) {
   table(sweep, "[[sweep]]",
         {"problem", "variant", "formulation", "integrator", "policy", "h", "rtol", "atol", "t_end", "set", "seed",
-         "tags"});
+         "tags", "reference"});
   need(sweep, "[[sweep]]", "problem", "problem = [\"free_body\"]");
   auto const problems =
       read_words(sweep, "problem", {}, [&](auto const& word) { return vocabulary.problem(word).name; });
@@ -361,11 +361,14 @@ std::vector<SuiteCell> read_sweeps(Toml const& root, Vocabulary const& vocabular
       if (tag.empty()) throw UsageError("tags: a tag must not be empty");
       return tag;
     });
+    auto const* reference = find(*sweep, "reference");
+    bool const wanted = !reference || truth(*reference, "reference");
     drawn += cells.size();
     check_size(*sweep, drawn);
     for (auto& cell : cells) {
       auto const [place, fresh] = places.try_emplace(results::cell_id(cell), all.size());
-      if (fresh) all.push_back({std::move(cell), {}});
+      if (fresh) all.push_back({std::move(cell), {}, false});
+      all[place->second].reference |= wanted;
       auto& known = all[place->second].tags;
       for (auto const& tag : tags) {
         if (std::find(known.begin(), known.end(), tag) == known.end()) known.push_back(tag);

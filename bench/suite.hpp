@@ -21,6 +21,7 @@ struct Timing {
 struct SuiteCell {
   results::Cell cell;
   std::vector<std::string> tags;
+  bool reference = true;  ///< false: claims, drift and counts are wanted, errors are not
 };
 
 /// Selects records: all keys must match (globs; numbers compared as numbers).

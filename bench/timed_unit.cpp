@@ -2,6 +2,7 @@
 /// who compiled this method against this problem would run. An inertia with products of inertia is not timed, nor are
 /// foils among the formulations: they are compiled for erased, counted runs alone.
 #include "bench/problems.hpp"
+#include "problems/catalog.hpp"
 
 namespace polhode::bench {
 namespace {

@@ -8,7 +8,7 @@
 #include "integrators/rivals/cvode.hpp"
 #include "integrators/rivals/odeint.hpp"
 #include "integrators/runge_kutta.hpp"
-#include "problems/catalog.hpp"
+#include "problems/formulations.hpp"
 
 namespace polhode {
 

@@ -145,7 +145,7 @@ struct Gauss {
             Chart<Body> here = Body::centre(at(x));
             add(here, u);
             at(y) = Body::retract(at(x), here);
-            at(place) = here;
+            if constexpr (!PowerSpace<M> || !M::flat) at(place) = here;  // many bodies on a flat space: y is it
           });
           chart_slope(p, S(t + hc[i]), x, place, y, v, L[i]);
           scale(L[i], hb[i]);

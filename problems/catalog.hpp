@@ -1,11 +1,10 @@
 #pragma once
-/// Every problem and every formulation. Adding one is a header and a line here; the rest of the project follows.
+/// Every problem. Adding one is a header and a line here; the rest of the project follows. (Formulations:
+/// formulations.hpp.)
 #include "problems/dead_zone.hpp"
-#include "problems/euler.hpp"
 #include "problems/formulations.hpp"
 #include "problems/free_body.hpp"
 #include "problems/group_consensus.hpp"
-#include "problems/mrp.hpp"
 #include "problems/pd_slew.hpp"
 #include "problems/quaternion_sync.hpp"
 #include "problems/tether_capture.hpp"
@@ -23,17 +22,5 @@ using Problems = Types<
     GroupConsensus
     >;
 // clang-format on
-
-/// Of one rigid body.
-using Formulations = Types<Formulation<FlatQuaternion>, Formulation<S3>, Formulation<SO3>, Formulation<FlatRotation>,
-                           Formulation<Mrp>, Formulation<MrpShadow>, Formulation<EulerAngles>>;
-/// Those in which methods are raced, unless a problem names its own: typed runs are what the build spends its time on.
-using TimedFormulations =
-    Types<Formulation<FlatQuaternion>, Formulation<S3>, Formulation<SO3>, Formulation<FlatRotation>>;
-/// Of many rigid bodies.
-using BodiesFormulations = Types<Formulation<FlatQuaternion>, Formulation<S3>, Formulation<SO3>,
-                                 Formulation<FlatRotation>, Formulation<Mrp>, Formulation<MrpShadow>>;
-/// Of many attitudes.
-using AttitudesFormulations = Types<Formulation<FlatQuaternion>, Formulation<S3>, Formulation<Mrp>>;
 
 }  // namespace polhode

@@ -1,7 +1,9 @@
 #pragma once
 /// Lists of types, and formulations as their members: what catalogues are made of, and what a problem that does not
 /// make sense in every formulation lists as its own `Formulations`.
-#include "problems/space.hpp"
+#include "problems/euler.hpp"
+#include "problems/mrp.hpp"
+#include "problems/power.hpp"
 
 namespace polhode {
 
@@ -18,5 +20,17 @@ struct Formulation {
   using On = A<S>;
   static constexpr std::string_view name = A<double>::name;
 };
+
+/// Of one rigid body.
+using Formulations = Types<Formulation<FlatQuaternion>, Formulation<S3>, Formulation<SO3>, Formulation<FlatRotation>,
+                           Formulation<Mrp>, Formulation<MrpShadow>, Formulation<EulerAngles>>;
+/// Those in which methods are raced, unless a problem names its own: typed runs are what the build spends its time on.
+using TimedFormulations =
+    Types<Formulation<FlatQuaternion>, Formulation<S3>, Formulation<SO3>, Formulation<FlatRotation>>;
+/// Of many rigid bodies.
+using BodiesFormulations = Types<Formulation<FlatQuaternion>, Formulation<S3>, Formulation<SO3>,
+                                 Formulation<FlatRotation>, Formulation<Mrp>, Formulation<MrpShadow>>;
+/// Of many attitudes.
+using AttitudesFormulations = Types<Formulation<FlatQuaternion>, Formulation<S3>, Formulation<Mrp>>;
 
 }  // namespace polhode

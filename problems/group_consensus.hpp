@@ -262,6 +262,7 @@ inline ProblemInfo const& GroupConsensus::info() {
             "theorem 2 is wrong: bodies that agree turn freely, and sigma escapes at 2 pi / |omega|",
             {},
             "s"}},
+      .step = 0.005,  // rates of up to 5 rad/s
       // Whether a method stops where the law jumps: same problem, more error.
       .driven = {"unlocated"}};
   return facts;

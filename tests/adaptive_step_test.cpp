@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "integrators/catalog.hpp"
+#include "problems/catalog.hpp"
 #include "tests/runs.hpp"
 
 namespace polhode {

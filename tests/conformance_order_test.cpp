@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "integrators/catalog.hpp"
+#include "problems/catalog.hpp"
 #include "tests/runs.hpp"
 
 namespace polhode {

@@ -150,17 +150,15 @@ TEST(EulerAngles, TheAttitudeKeepsItsDigitsAtTheSingularity) {
 
 // ---- The singularity ------------------------------------------------------------------------------------------------
 
-TEST(EulerAngles, AreSingularWithinAMicroradian) {
-  for (double sign : {-1., 1.})
-    for (double side : {-1., 1.})
-      for (double quarters : {1., 3.}) {
-        double const centre = sign * quarters * pi / 2;
-        EXPECT_TRUE(E::singular({0.3, centre, 0.7}));
-        EXPECT_TRUE(E::singular({0.3, centre + side * 0.999e-6, 0.7}));
-        EXPECT_FALSE(E::singular({0.3, centre + side * 1.001e-6, 0.7}));
-      }
+TEST(EulerAngles, AreSingularWithinAMicroradianOf90DegreesOfPitchAndBeyond) {
+  for (double sign : {-1., 1.}) {
+    EXPECT_TRUE(E::singular({0.3, sign * pi / 2, 0.7}));
+    EXPECT_TRUE(E::singular({0.3, sign * (pi / 2 - 0.999e-6), 0.7}));
+    EXPECT_FALSE(E::singular({0.3, sign * (pi / 2 - 1.001e-6), 0.7}));
+    EXPECT_TRUE(E::singular({0.3, sign * (pi / 2 + 0.1), 0.7})) << "a step has jumped across";
+  }
+  EXPECT_TRUE(E::singular({0, pi, 0}));
   EXPECT_FALSE(E::singular({pi / 2, 0, pi / 2}));
-  EXPECT_FALSE(E::singular({0, pi, 0}));
 }
 
 TEST(EulerAngles, AreSingularInEveryScalar) {

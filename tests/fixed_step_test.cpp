@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "integrators/catalog.hpp"
+#include "problems/catalog.hpp"
 #include "tests/random_numbers.hpp"
 #include "tests/runs.hpp"
 

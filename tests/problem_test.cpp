@@ -226,8 +226,8 @@ struct KinkedTurn {
   std::vector<double> time_events() const { return {event}; }
 };
 
-/// The same at a speed with a jump: 1 before the event, 3 from then on. `phases`: it switches when it is told; otherwise by
-/// comparing the time, which the last stage of the step before the event gets wrong.
+/// The same at a speed with a jump: 1 before the event, 3 from then on. `phases`: it switches when it is told;
+/// otherwise by comparing the time, which the last stage of the step before the event gets wrong.
 template <bool phases>
 struct JumpingTurn : KinkedTurn {
   static constexpr double angle = event + (1 - event) * 3;

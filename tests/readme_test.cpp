@@ -23,8 +23,7 @@ std::string block(std::string const& readme, std::string const& name) {
 }
 
 TEST(Readme, ExampleProblemIsTheCompiledOne) {
-  EXPECT_EQ(block("problems/README.md", "tests/consumer/damped_body.hpp"),
-            contents("tests/consumer/damped_body.hpp"));
+  EXPECT_EQ(block("problems/README.md", "tests/consumer/damped_body.hpp"), contents("tests/consumer/damped_body.hpp"));
 }
 TEST(Readme, ExampleIntegratorsAreTheCompiledOnes) {
   EXPECT_EQ(block("integrators/README.md", "tests/consumer/heun.hpp"), contents("tests/consumer/heun.hpp"));

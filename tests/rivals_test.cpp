@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "integrators/catalog.hpp"
+#include "problems/catalog.hpp"
 #include "tests/runs.hpp"
 
 namespace polhode {

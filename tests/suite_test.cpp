@@ -34,6 +34,14 @@ std::string control(results::Cell const& cell) {
 
 using Texts = std::vector<std::string>;
 
+TEST(GoodSuite, AReferenceIsMadeForACellIfAnyOfItsSweepsWantsOne) {
+  std::string const sweep = "[[sweep]]\nproblem = \"free_body\"\nformulation = \"s3\"\nintegrator = \"cf4\"\n";
+  auto const suite = read("name = \"mine\"\n" + sweep + "h = [0.1, 0.2]\nreference = false\n" + sweep + "h = 0.2\n");
+  ASSERT_EQ(suite.cells.size(), 2u);
+  EXPECT_FALSE(suite.cells[0].reference);
+  EXPECT_TRUE(suite.cells[1].reference);
+}
+
 TEST(GoodSuite, TheWholeFormat) {
   std::string const text = R"(# All that a suite can say.
 name = "mine"
@@ -67,7 +75,8 @@ xfail = "a reason"
   EXPECT_EQ(suite.timing.repetitions, 7);
   ASSERT_EQ(suite.cells.size(), 2 * 2 * 2 * 4 * 2 * 2);
 
-  auto const& [first, tags] = suite.cells.front();
+  auto const& [first, tags, reference] = suite.cells.front();
+  EXPECT_TRUE(reference);
   EXPECT_EQ(first.problem, "free_body");
   EXPECT_EQ(first.variant, "");
   EXPECT_EQ(first.formulation, "quaternion");
@@ -109,7 +118,7 @@ TEST(GoodSuite, Defaults) {
   auto const places =
       listed(suite, [](auto const& cell) { return cell.problem + "/" + cell.variant + "/" + cell.formulation; });
   EXPECT_EQ(places, (Texts{"free_body//quaternion", "free_body//s3", "pd_slew/plain/quaternion"}));
-  for (auto const& [cell, tags] : suite.cells) {
+  for (auto const& [cell, tags, reference] : suite.cells) {
     EXPECT_EQ(cell.policy, "none");
     EXPECT_EQ(cell.h, 1.0);
     EXPECT_EQ(cell.t_end, 0) << "the problem's own";
@@ -188,7 +197,7 @@ t_end = [10, 20]
 tags = 'first'
 )" + exclusion));
   std::set<std::string> left;
-  for (auto const& [cell, tags] : suite.cells) {
+  for (auto const& [cell, tags, reference] : suite.cells) {
     left.insert(cell.problem.substr(0, 2) + " " + cell.integrator.substr(0, 1) + " " +
                 (*cell.h == 0.5 ? "long" : "short"));
   }
