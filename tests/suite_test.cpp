@@ -35,7 +35,7 @@ std::string control(results::Cell const& cell) {
 using Texts = std::vector<std::string>;
 
 TEST(GoodSuite, AReferenceIsMadeForACellIfAnyOfItsSweepsWantsOne) {
-  std::string const sweep = "[[sweep]]\nproblem = \"free_body\"\nformulation = \"s3\"\nintegrator = \"cf4\"\n";
+  std::string const sweep = "[[sweep]]\nproblem = \"free_body\"\nformulation = \"quaternion\"\nintegrator = \"rk4\"\n";
   auto const suite = read("name = \"mine\"\n" + sweep + "h = [0.1, 0.2]\nreference = false\n" + sweep + "h = 0.2\n");
   ASSERT_EQ(suite.cells.size(), 2u);
   EXPECT_FALSE(suite.cells[0].reference);
