@@ -94,16 +94,16 @@ TEST(Formulations, OfTheSynchronisedNetworkAgree) {
 }
 TEST(Formulations, OfTheSwarmAgree) {
   for (char const* variant : {"ic1", "ic2", "ic3"})
-    expect_agreement("group_consensus", variant, 5, {"quaternion", "s3", "mrp"}, 0.005, 1e-11);
-  expect_agreement("group_consensus", "ic2,shadow", 5, {"quaternion", "s3", "mrp_shadow"}, 0.005, 1e-11);
+    expect_agreement("group_consensus", variant, 1.5, {"quaternion", "s3", "mrp"}, 0.005, 1e-11);
+  expect_agreement("group_consensus", "ic2,shadow", 1.5, {"quaternion", "s3", "mrp_shadow"}, 0.005, 1e-11);
 }
 TEST(Formulations, OfOneBodyAgree) {
   std::vector<std::string> const all{"quaternion", "s3", "so3", "rotation", "mrp", "mrp_shadow", "euler"};
-  expect_agreement("dead_zone", "smooth,n4", 7, all, 0.004, 1e-12);
-  expect_agreement("dead_zone", "continuous,n4", 7, all, 0.004, 1e-11);
-  expect_agreement("pd_slew", "", 20, all, 0.01, 1e-12);
-  expect_agreement("free_body", "", 20, all, 0.01, 1e-12);
-  expect_agreement("tether_capture", "case1", 20, all, 0.02, 1e-12);
+  expect_agreement("dead_zone", "smooth,n4", 3, all, 0.004, 1e-12);
+  expect_agreement("dead_zone", "continuous,n4", 5.5, all, 0.004, 1e-11);
+  expect_agreement("pd_slew", "", 10, all, 0.01, 1e-12);
+  expect_agreement("free_body", "", 10, all, 0.01, 1e-12);
+  expect_agreement("tether_capture", "case1", 10, all, 0.02, 1e-12);
 }
 
 // ---- Cost -----------------------------------------------------------------------------------------------------------

@@ -45,6 +45,7 @@ class ErkStepper {
     require(ERKStepSetUserData(memory_.get(), field_.get()));
     require(ERKStepSetOrder(memory_.get(), order));
     require(ERKStepSetMaxNumSteps(memory_.get(), most_steps));
+    require(ERKStepSetErrFile(memory_.get(), nullptr));  // a failure is a status, not a message
   }
   static void require(int code) {
     if (code != ARK_SUCCESS) throw std::bad_alloc();

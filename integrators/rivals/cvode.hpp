@@ -36,7 +36,8 @@ class CvodeMemory {
     bool good = CVodeInit(memory_.get(), field, 0, y_.get()) == CV_SUCCESS &&
                 CVodeSStolerances(memory_.get(), control.rtol, control.atol) == CV_SUCCESS &&
                 CVodeSetUserData(memory_.get(), user) == CV_SUCCESS &&
-                CVodeSetMaxNumSteps(memory_.get(), most_steps) == CV_SUCCESS;
+                CVodeSetMaxNumSteps(memory_.get(), most_steps) == CV_SUCCESS &&
+                CVodeSetErrFile(memory_.get(), nullptr) == CV_SUCCESS;  // a failure is a status, not a message
     if (multistep == CV_ADAMS) {
       fixed_point_.reset(SUNNonlinSol_FixedPoint(y_.get(), 0, context_.get()));
       good = good && CVodeSetNonlinearSolver(memory_.get(), fixed_point_.get()) == CV_SUCCESS;
