@@ -1,6 +1,10 @@
 #pragma once
-/// Smooth slew from a tumble to rest under proportional-derivative control: the commonest loop in practice, and an order
-/// problem. state   attitude x omega [rad/s, body] params  inertia [kg m^2], q0, omega0 [rad/s], k_p [N m], k_d [N m s]
+/// Smooth slew from a tumble to rest under proportional-derivative control: the commonest loop in practice, and an
+/// order problem.
+///
+/// state   attitude x omega [rad/s, body]
+///
+/// params  inertia [kg m^2], q0, omega0 [rad/s], k_p [N m], k_d [N m s]
 #include "problems/controllers/pd.hpp"
 #include "problems/definition.hpp"
 #include "problems/rigid_body.hpp"
