@@ -214,7 +214,7 @@ PreparedCell prepare(results::Cell cell, double every) {
                     every, *cell.h, *cell.h * std::max(1.0, std::round(every / *cell.h))));
 
   prepared.schedule = {.t_end = cell.t_end, .sample_period = period, .jumps = {}, .output_period = every};
-  std::visit([&](auto const& field) { prepared.schedule.jumps = field->time_events(); }, prepared.problem->as_series());
+  std::visit([&](auto const& field) { prepared.schedule.jumps = field->time_events(); }, prepared.problem->in_quad());
   check_number_of_stops(prepared.schedule);
   prepared.plan.stops = stops_of(prepared.schedule);
   prepared.plan.policy = policy_named(cell.policy);
