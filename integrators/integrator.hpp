@@ -122,6 +122,15 @@ struct Workspace<M, F> {
   F storage;
 };
 
+/// What storage is fitted to: the initial state of many bodies; of one body nothing is asked.
+template <Problem P>
+Point<typename P::Space> shape_of(P const& problem) {
+  if constexpr (PowerSpace<typename P::Space>)
+    return problem.initial();
+  else
+    return {};
+}
+
 /// Equal steps. A method supplies, for each space M:
 ///   Frame<M>                   the storage of one step; fit(x) gives it the length of x (many bodies)
 ///   Memory<M>                  what survives from step to step, with restart() and fit(x); NoMemory for most
@@ -179,12 +188,6 @@ class Fixed {
       return h_;
     else
       return n > 0 ? span / R(double(n)) : h_;
-  }
-  static Point<M> shape_of(P const& problem) {
-    if constexpr (PowerSpace<M>)
-      return problem.initial();
-    else
-      return {};
   }
   POLHODE_INLINE void loop(Point<M>& x, R t, R h, std::int64_t n) {
     steps_ += n;

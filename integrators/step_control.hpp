@@ -126,12 +126,6 @@ class Controlled {
     return R(std::min({100 * h, h1, double(longest)}));
   }
 
-  static Point<M> shape_of(P const& problem) {
-    if constexpr (PowerSpace<M>)
-      return problem.initial();
-    else
-      return {};
-  }
   void slope_at(R const& t, Point<M> const& x, Chart<M>& k) {
     auto&& frame = frame_.open();
     slope(*problem_, S(t), x, frame.v, k);
