@@ -60,6 +60,8 @@ struct History {
 ///   claims(history)        the claims, evaluated
 ///   field<S, A, fast>()    the problem in scalar S and attitude space A, on one body, Attitudes or RigidBodies
 /// and where it applies (see the functions below, which say what holds without)
+///   with_field<S, A, fast>(f)  calls f(field) where the choice decides the type of the field, or its space
+///   plain()                that choice is field(), which methods are raced on
 ///   Formulations           those that it can be written in
 ///   TimedFormulations      those in which methods are raced
 ///   refusal(formulation)   why this choice makes no sense in one of them
@@ -138,11 +140,39 @@ std::string refusal_of(D const& definition, std::string_view formulation) {
     return "";
 }
 
-/// The field of a definition with its type forgotten.
+/// The choice is the field that field() makes, unless the definition says otherwise.
+template <Definition D>
+bool is_plain(D const& definition) {
+  if constexpr (requires { definition.plain(); })
+    return definition.plain();
+  else
+    return true;
+}
+
+/// Calls f(field) with the field as chosen.
+template <Scalar S, template <class> class A, Definition D, class F>
+void with_field(D const& definition, F f) {
+  auto const call = [&]<bool fast>() {
+    if constexpr (requires { definition.template with_field<S, A, fast>(f); })
+      definition.template with_field<S, A, fast>(f);
+    else
+      f(definition.template field<S, A, fast>());
+  };
+  if (is_principal(definition))
+    call.template operator()<true>();
+  else
+    call.template operator()<false>();
+}
+
+/// The field as chosen with its type forgotten; null if it lives on another space than field().
 template <Scalar S, template <class> class A, Definition D>
 auto erase(D const& definition) {
-  if (is_principal(definition)) return erase_type(definition.template field<S, A, true>());
-  return erase_type(definition.template field<S, A, false>());
+  using M = typename decltype(definition.template field<S, A, true>())::Space;
+  std::unique_ptr<Erased<M>> erased;
+  with_field<S, A>(definition, [&](auto field) {
+    if constexpr (std::same_as<typename decltype(field)::Space, M>) erased = erase_type(std::move(field));
+  });
+  return erased;
 }
 
 inline std::vector<double> History::column(std::string const& name) const {

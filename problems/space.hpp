@@ -288,5 +288,10 @@ struct Product {
 /// The state of a rigid body: attitude (first) and body rate omega [rad/s] (second).
 template <Attitude A>
 using RigidBody = Product<A, Euclidean3<typename A::Scalar>>;
+/// The state of a rigid body that moves in space: RigidBody (first) and, in inertial axes, the position [m] and the
+/// velocity [m/s] of its centre of mass (second).
+template <Attitude A>
+using MovingBody =
+    Product<RigidBody<A>, Product<Euclidean3<typename A::Scalar>, Euclidean3<typename A::Scalar>>>;
 
 }  // namespace polhode
