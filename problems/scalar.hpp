@@ -81,6 +81,12 @@ inline Quad cos(Quad x) {
 inline Quad atan2(Quad y, Quad x) {
   return atan2q(y, x);
 }
+inline double floor(double x) {
+  return std::floor(x);
+}
+inline Quad floor(Quad x) {
+  return floorq(x);
+}
 
 /// a if the mask is set, else b.
 template <class S>
@@ -110,6 +116,16 @@ POLHODE_INLINE S clamp(S const& x, S const& low, S const& high) {
 template <class S>
 POLHODE_INLINE S sign_of(S const& x) {
   return select(x < S(0.0), S(-1.0), S(1.0));
+}
+/// The whole number nearest to x, of two the greater. Of a series or a dual number its value now, a constant.
+template <class S>
+S nearest_whole(S const& x) {
+  if constexpr (std::same_as<S, Real<S>>)
+    return floor(x + S(0.5));
+  else if constexpr (requires { x.value; })
+    return S(floor(x.value + Real<S>(0.5)));
+  else
+    return S(floor(x[0] + Real<S>(0.5)));
 }
 /// Neither infinite nor NaN.
 template <class S>
