@@ -32,15 +32,6 @@ MethodOn<M> const& method_named(std::string_view name) {
   throw std::out_of_range("no integrator " + std::string(name));
 }
 
-/// Columns of one body's state, after `prefix`.
-template <Attitude A>
-void add_columns(std::vector<Column>& columns, std::string const& prefix) {
-  for (char const* name : {"q1", "q2", "q3", "q4"}) columns.push_back({prefix + name, ""});
-  for (char const* name : {"wx", "wy", "wz"}) columns.push_back({prefix + name, "rad/s"});
-  if constexpr (shows_parameters<A>)
-    for (char const* name : {"s1", "s2", "s3"}) columns.push_back({prefix + name, ""});
-}
-
 }  // namespace
 
 std::vector<Column> columns_of(PreparedCell const& prepared) {
@@ -49,8 +40,9 @@ std::vector<Column> columns_of(PreparedCell const& prepared) {
   std::visit(
       [&]<Space M>(std::unique_ptr<Erased<M>> const& field) {
         int body = 0;
-        each_attitude<M>(field->initial(), [&]<class A>(Point<A> const&, Vec3<double> const*) {
-          add_columns<A>(columns, PowerSpace<M> ? fmt::format("b{}.", ++body) : "");
+        each_body<M>(field->initial(), [&]<class Body>(Point<Body> const&) {
+          std::string const prefix = PowerSpace<M> ? fmt::format("b{}.", ++body) : "";
+          for (Column const& column : shown_columns<Body>()) columns.push_back({prefix + column.name, column.unit});
         });
       },
       problem);
@@ -62,7 +54,9 @@ namespace {
 
 /// What a measured run keeps: many bodies would fill the memory.
 std::vector<Column> measured_columns(PreparedCell const& prepared) {
-  return prepared.problem->body() ? columns_of(prepared) : prepared.problem->columns();
+  ProblemInFormulation const problem = prepared.problem->in(prepared.cell.formulation);
+  bool const many = std::visit([]<Space M>(std::unique_ptr<Erased<M>> const&) { return PowerSpace<M>; }, problem);
+  return many ? prepared.problem->columns() : columns_of(prepared);
 }
 
 /// Runs a prepared cell on its erased problem. A measured run of many bodies keeps the problem's own columns alone.
@@ -279,7 +273,7 @@ Measured measure(PreparedCell const& prepared, References& references, std::stri
     record.reference_bar = reference->bar;
   }
   Metrics metrics(reference.get(), prepared.problem->torque_free() ? prepared.problem->body() : nullptr,
-                  prepared.cell.t_end);
+                  prepared.cell.t_end, prepared.problem->pinned());
   Trajectory trajectory = run(prepared, &metrics, limits);
 
   record.status = trajectory.status;

@@ -61,8 +61,9 @@ std::optional<double> growth_exponent(std::vector<double> const& times, std::vec
   return median(std::move(slopes));
 }
 
-Metrics::Metrics(UsableReference const* reference, BodyParameters const* free_body, double t_end)
-    : reference_(reference), t_end_(t_end) {
+Metrics::Metrics(UsableReference const* reference, BodyParameters const* free_body, double t_end,
+                 std::optional<PinnedBody<Quad>> pinned)
+    : reference_(reference), pinned_(std::move(pinned)), t_end_(t_end) {
   if (free_body) inertia_ = free_body->matrix<Quad>();
 }
 
@@ -79,17 +80,31 @@ void Metrics::see(Sight const& sight) {
   drift_final_ = drift;
   raw_max_ = std::max({raw_max_, sight.raw_defect, std::fabs(drift)});
 
-  if (inertia_) {
-    Invariants const now = invariants_of(*inertia_, sight.bodies[0].q, sight.bodies[0].omega);
-    if (first) start_ = now;
-    auto const relative = [](Quad a, Quad b) { return b == 0 ? double(abs_of(a)) : double(abs_of(Quad((a - b) / b))); };
-    energy_max_ = std::max(energy_max_, relative(now.energy, start_->energy));
-    momentum_max_ = std::max(momentum_max_, relative(now.momentum, start_->momentum));
-    direction_max_ = std::max(direction_max_, angle(now.direction, start_->direction));
-  }
-
+  if (inertia_) see_invariants(sight, first);
+  if (pinned_) see_constraint(sight);
   bool const end = sight.t >= t_end_;
   if (sight.t >= next_comparison_ || end) compare(sight);
+}
+
+void Metrics::see_invariants(Sight const& sight, bool first) {
+  Invariants const now = invariants_of(*inertia_, sight.bodies[0].q, sight.bodies[0].omega);
+  if (first) start_ = now;
+  auto const relative = [](Quad a, Quad b) { return b == 0 ? double(abs_of(a)) : double(abs_of(Quad((a - b) / b))); };
+  energy_max_ = std::max(energy_max_, relative(now.energy, start_->energy));
+  momentum_max_ = std::max(momentum_max_, relative(now.momentum, start_->momentum));
+  direction_max_ = std::max(direction_max_, angle(now.direction, start_->direction));
+}
+
+void Metrics::see_constraint(Sight const& sight) {
+  BodySight const& body = sight.bodies[0];
+  Mat3<Quad> const& R = body.rotation;
+  Vec3<Quad> const lambda = sight.multiplier ? *sight.multiplier : pinned_->multiplier(R, body.omega);
+  auto const acceleration =
+      pinned_->constraint_acceleration(R, body.omega, pinned_->accelerations(R, body.omega, lambda));
+  auto const note = [](double& most, Vec3<Quad> const& defect) { most = std::max(most, double(length(defect))); };
+  note(position_defect_, pinned_->constraint(R, body.position));
+  note(velocity_defect_, pinned_->constraint_rate(R, body.omega, body.velocity));
+  note(acceleration_defect_, acceleration);
 }
 
 void Metrics::compare(Sight const& sight) {
@@ -113,6 +128,7 @@ double Metrics::errors_of(Sight const& sight) {
     rate_error = std::max(rate_error, double(length(sight.bodies[i].omega - exact[i].omega)));
   }
   rate_error /= rate_scale > 0 ? rate_scale : 1;
+  if (pinned_) compare_multipliers(sight, exact[0]);
   // Trapezoidal rule on the squares.
   attitude_squares_ += (sight.t - last_comparison_) * (error * error + attitude_end_ * attitude_end_) / 2;
   attitude_end_ = error;
@@ -123,22 +139,41 @@ double Metrics::errors_of(Sight const& sight) {
   return error;
 }
 
+void Metrics::compare_multipliers(Sight const& sight, QuadBody const& exact) {
+  BodySight const& body = sight.bodies[0];
+  Vec3<Quad> const right = pinned_->multiplier(matrix(exact.q), exact.omega);
+  Vec3<Quad> const lambda = sight.multiplier ? *sight.multiplier : pinned_->multiplier(body.rotation, body.omega);
+  multiplier_error_ = std::max(multiplier_error_, double(length(lambda - right)));
+  largest_multiplier_ = std::max(largest_multiplier_, double(length(right)));
+}
+
 void Metrics::fill(results::Record& record) const {
-  record.norm_drift_raw_max = raw_max_;
-  record.norm_drift_max = drift_max_;
-  record.norm_drift_final = drift_final_;
-  record.norm_drift_rms = std::sqrt(drift_squares_ / t_end_);
-  record.norm_growth_exponent = growth_exponent(drift_times_, drifts_);
+  bool const attitudes = !reference_ || reference_->reference.layout().attitude;
+  if (attitudes) {
+    record.norm_drift_raw_max = raw_max_;
+    record.norm_drift_max = drift_max_;
+    record.norm_drift_final = drift_final_;
+    record.norm_drift_rms = std::sqrt(drift_squares_ / t_end_);
+    record.norm_growth_exponent = growth_exponent(drift_times_, drifts_);
+  }
   if (inertia_) {
     record.energy_drift_max = energy_max_;
     record.momentum_drift_max = momentum_max_;
     record.momentum_direction_max = direction_max_;
   }
+  if (pinned_) {
+    record.position_defect_max = position_defect_;
+    record.velocity_defect_max = velocity_defect_;
+    record.acceleration_defect_max = acceleration_defect_;
+    if (reference_) record.multiplier_error_max = multiplier_error_ / largest_multiplier_;
+  }
   if (!reference_) return;
-  record.attitude_error_max = attitude_max_;
-  record.attitude_error_end = attitude_end_;
-  record.attitude_error_l2 = std::sqrt(attitude_squares_ / t_end_);
-  if (!reference_->reference.has_rates()) return;
+  if (attitudes) {
+    record.attitude_error_max = attitude_max_;
+    record.attitude_error_end = attitude_end_;
+    record.attitude_error_l2 = std::sqrt(attitude_squares_ / t_end_);
+  }
+  if (!reference_->reference.layout().rate) return;
   record.rate_error_max = rate_max_;
   record.rate_error_end = rate_end_;
 }

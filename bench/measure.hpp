@@ -5,21 +5,17 @@
 #include <vector>
 
 #include "bench/reference.hpp"
+#include "problems/pinned_body.hpp"
 #include "results/record.hpp"
 
 namespace polhode::bench {
 
-/// The state of one body at one time, widened to quadruple precision.
-struct BodySight {
-  Quat<Quad> q;        ///< as the run has it, not normalised
-  Vec3<Quad> omega{};  ///< 0 where rates are commands and no state
-  double drift = 0;    ///< defect of the constraint; for quaternions signed, q.q - 1
-};
 /// A run at one time.
 struct Sight {
   double t = 0;  ///< [s]
   std::span<BodySight const> bodies;
   double raw_defect = 0;  ///< the greatest defect of a step before projection, so far
+  std::optional<Vec3<Quad>> multiplier{};  ///< that the method carries
 };
 
 /// Energy and angular momentum of a rigid body with inertia matrix J [kg m^2].
@@ -39,8 +35,9 @@ std::optional<double> growth_exponent(std::vector<double> const& times, std::vec
 class Metrics {
  public:
   /// reference null: nothing to hold the run against. free_body: its energy and angular momentum are invariants; null
-  /// if the problem has no such body.
-  Metrics(UsableReference const* reference, BodyParameters const* free_body, double t_end);
+  /// if the problem has no such body. pinned: a constrained body.
+  Metrics(UsableReference const* reference, BodyParameters const* free_body, double t_end,
+          std::optional<PinnedBody<Quad>> pinned = {});
   /// At 0 s and after every accepted step, in order of time.
   void see(Sight const& sight);
   /// Writes what was measured into the record.
@@ -50,18 +47,24 @@ class Metrics {
   results::Series drift_series(std::string const& cell) const;
 
  private:
+  void see_invariants(Sight const& sight, bool first);
+  void see_constraint(Sight const& sight);
+  void compare_multipliers(Sight const& sight, QuadBody const& exact);
   void compare(Sight const& sight);
   /// Notes the errors against the reference; the attitude error [rad].
   double errors_of(Sight const& sight);
 
   UsableReference const* reference_;
-  std::optional<Mat3<Quad>> inertia_;  ///< of the free body
+  std::optional<Mat3<Quad>> inertia_;      ///< of a free body: its energy and angular momentum are invariants
+  std::optional<PinnedBody<Quad>> pinned_;  ///< a constrained body
   double t_end_;
   std::optional<Invariants> start_;
 
   double drift_max_ = 0, drift_final_ = 0, drift_squares_ = 0, raw_max_ = 0;
   std::vector<double> drift_times_, drifts_;
   double energy_max_ = 0, momentum_max_ = 0, direction_max_ = 0;
+  double position_defect_ = 0, velocity_defect_ = 0, acceleration_defect_ = 0;
+  double multiplier_error_ = 0, largest_multiplier_ = 0;
 
   double next_comparison_ = 0, last_comparison_ = 0;
   double attitude_max_ = 0, attitude_end_ = 0, attitude_squares_ = 0, rate_max_ = 0, rate_end_ = 0;

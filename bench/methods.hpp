@@ -18,11 +18,15 @@ template <class... F>
 Types<Attitudes<typename F::template On<double>>...> attitudes(Types<F...>);
 template <class... F>
 Types<RigidBodies<typename F::template On<double>>...> bodies(Types<F...>);
+template <class... F>
+Types<Euclidean3<double>, MovingBody<typename F::template On<double>>...> positions(Types<F...>);
 }  // namespace detail
-/// The spaces that runs live on: one rigid body, many attitudes, many rigid bodies, in their formulations.
+/// The spaces that runs live on: one rigid body, many attitudes, many rigid bodies, in their formulations; three numbers
+/// alone, and a body that moves in space.
 using OneBodySpaces = decltype(detail::one_body(Formulations{}));
 using AttitudesSpaces = decltype(detail::attitudes(AttitudesFormulations{}));
 using BodiesSpaces = decltype(detail::bodies(BodiesFormulations{}));
+using PositionSpaces = decltype(detail::positions(TimedFormulations{}));
 
 /// How a method is driven.
 using Control = std::variant<FixedStep, Adaptive>;
@@ -55,6 +59,8 @@ class Watch {
   virtual ~Watch() = default;
   virtual void at_stop(Stop const& stop, Point<M> const& x) = 0;
   virtual void after_step(double t, Point<M> const& x, Projections const& projections) = 0;
+  /// Before after_step, from methods that carry the multiplier of a constraint: its value at the end of the step.
+  virtual void multiplier(Vec3<double> const&) {}
 };
 
 /// One integrator on one space.
@@ -67,20 +73,22 @@ struct MethodOn {
   Solve solve = nullptr;                 ///< null if refused
 };
 
-/// One list of the catalogue on space M, in catalogue order. Methods is OwnMethods or Rivals.
+/// One list of the catalogue on space M, in catalogue order.
 template <Space M, class Methods>
 std::vector<MethodOn<M>> methods_on();
 
 /// The whole catalogue on space M.
 template <Space M>
 std::vector<MethodOn<M>> const& all_methods_on() {
-  static std::vector<MethodOn<M>> const list = [] {
-    std::vector<MethodOn<M>> own = methods_on<M, OwnMethods>();
-    std::vector<MethodOn<M>> const rivals = methods_on<M, Rivals>();
-    own.insert(own.end(), rivals.begin(), rivals.end());
-    return own;
-  }();
-  return list;
+  static std::vector<MethodOn<M>> const all = []<class... List>(Types<List...>) {
+    std::vector<MethodOn<M>> joined;
+    auto const append = [&](std::vector<MethodOn<M>> const& list) {
+      joined.insert(joined.end(), list.begin(), list.end());
+    };
+    (append(methods_on<M, List>()), ...);
+    return joined;
+  }(MethodLists{});
+  return all;
 }
 
 /// Calls f(bound stepper) with the method driven as the plan says.

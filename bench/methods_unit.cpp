@@ -1,5 +1,5 @@
-/// One list of the catalogue (POLHODE_METHODS: OwnMethods or Rivals), compiled for erased problems on every space of
-/// one kind (POLHODE_SPACES: OneBodySpaces, AttitudesSpaces or BodiesSpaces).
+/// One list of the catalogue (POLHODE_METHODS: a member of MethodLists), compiled for erased problems on every space of
+/// one kind (POLHODE_SPACES: OneBodySpaces, AttitudesSpaces, BodiesSpaces or PositionSpaces).
 #include <tuple>
 
 #include "bench/methods.hpp"
@@ -30,8 +30,8 @@ Outcome solve(Erased<M>& problem, Plan const& plan, Watch<M>& watch) {
 
 template <Space M, class Method>
 MethodOn<M> method_on() {
-  using Flat = Erased<RigidBody<FlatQuaternion<double>>>;
-  using Group = Erased<RigidBody<S3<double>>>;
+  using Flat = Erased<MovingBody<FlatQuaternion<double>>>;  // constrained: every method runs on one of the two
+  using Group = Erased<MovingBody<S3<double>>>;
   MethodOn<M> entry{.info = &Method::info,
                     .fixed = RunsFixed<Method, Flat> || RunsFixed<Method, Group>,
                     .adaptive = RunsAdaptive<Method, Flat> || RunsAdaptive<Method, Group>,

@@ -18,6 +18,8 @@ class Chosen final : public ChosenProblem {
   double sample_period() const override { return definition_.sample_period; }
   bool torque_free() const override { return definition_.torque_free(); }
   BodyParameters const* body() const override { return body_of(definition_); }
+  std::optional<PinnedBody<Quad>> pinned() const override { return pinned_of<Quad>(definition_); }
+  std::optional<Vec3<Quad>> closed_form(Quad t) const override { return closed_form_of(definition_, t); }
   bool switches() const override { return polhode::switches(definition_); }
   bool wants_events() const override { return polhode::wants_events(definition_); }
   std::string no_reference() const override { return why_no_reference(definition_); }
@@ -35,22 +37,39 @@ class Chosen final : public ChosenProblem {
   ProblemInFormulation in(std::string_view formulation) const override {
     return find(formulation, FormulationsOf<D>{});
   }
-  SeriesProblem as_series() const override { return erase<Series, FlatQuaternion>(definition_); }
-  QuadProblem in_quad() const override { return erase<Quad, S3>(definition_); }
+  SeriesProblem as_series() const override { return erased<SeriesProblem, Series, FlatQuaternion>(); }
+  QuadProblem in_quad() const override { return erased<QuadProblem, Quad, S3>(); }
 
-  std::unique_ptr<TimedSolve> timed(std::string_view formulation, std::string_view integrator,
-                                    Plan const& plan) const override {
-    auto own = timed_solve<D, OwnMethods>(definition_, formulation, integrator, plan);
+  std::unique_ptr<TimedSolve> timed([[maybe_unused]] std::string_view formulation,
+                                    [[maybe_unused]] std::string_view integrator,
+                                    [[maybe_unused]] Plan const& plan) const override {
+#ifdef POLHODE_RACES
+    auto own = timed_solve<D, RacedMethods>(definition_, formulation, integrator, plan);
     return own ? std::move(own) : timed_solve<D, Rivals>(definition_, formulation, integrator, plan);
+#else
+    return nullptr;
+#endif
   }
 
  private:
   template <class... F>
   ProblemInFormulation find(std::string_view name, Types<F...>) const {
     ProblemInFormulation found;
-    bool const known = ((F::name == name ? (found = erase<double, F::template On>(definition_), true) : false) || ...);
+    bool const known =
+        ((F::name == name ? (found = erased<ProblemInFormulation, double, F::template On>(), true) : false) || ...);
     if (!known) throw std::out_of_range("no formulation " + std::string(name));
     return found;
+  }
+  /// The field as chosen, with its type forgotten. Throws std::out_of_range if no run lives on its space.
+  template <class Any, Scalar S, template <class> class A>
+  Any erased() const {
+    std::optional<Any> any;
+    with_field<S, A>(definition_, [&](auto field) {
+      using Here = std::unique_ptr<Erased<typename decltype(field)::Space>>;
+      if constexpr (std::constructible_from<Any, Here>) any.emplace(erase_type(std::move(field)));
+    });
+    if (!any) throw std::out_of_range("no run lives on the space of " + D::info().name);
+    return std::move(*any);
   }
   template <class... F>
   static bool written_in(std::string_view name, Types<F...>) {

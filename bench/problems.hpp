@@ -21,15 +21,14 @@ template <class... M>
 struct ErasedOn<Types<M...>> {
   using type = std::variant<std::unique_ptr<Erased<M>>...>;
 };
-template <class... A, class... B, class... C>
-Types<A..., B..., C...> joined(Types<A...>, Types<B...>, Types<C...>);
-/// One body, many attitudes, many bodies.
+/// One body, many attitudes, many bodies, three numbers, a body that moves in space.
 template <class A>
-using Kinds = Types<RigidBody<A>, Attitudes<A>, RigidBodies<A>>;
+using Kinds =
+    Types<RigidBody<A>, Attitudes<A>, RigidBodies<A>, Euclidean3<typename A::Scalar>, MovingBody<A>>;
 }  // namespace detail
 /// A problem on one of the spaces that runs live on, owned.
 using ProblemInFormulation =
-    detail::ErasedOn<decltype(detail::joined(OneBodySpaces{}, AttitudesSpaces{}, BodiesSpaces{}))>::type;
+    detail::ErasedOn<Joined<OneBodySpaces, AttitudesSpaces, BodiesSpaces, PositionSpaces>>::type;
 /// The same for the two methods of a reference.
 using SeriesProblem = detail::ErasedOn<detail::Kinds<FlatQuaternion<Series>>>::type;
 using QuadProblem = detail::ErasedOn<detail::Kinds<S3<Quad>>>::type;
@@ -53,6 +52,10 @@ class ChosenProblem {
   virtual bool torque_free() const = 0;
   /// The rigid body; null if the problem is not one.
   virtual BodyParameters const* body() const = 0;
+  /// The state at time t where there is a closed form of three numbers.
+  virtual std::optional<Vec3<Quad>> closed_form(Quad t) const = 0;
+  /// The body under a constraint; null if the problem has none.
+  virtual std::optional<PinnedBody<Quad>> pinned() const = 0;
   virtual bool switches() const = 0;      ///< the field has kinks or jumps in the state
   virtual bool wants_events() const = 0;  ///< methods that can are to locate them
   /// Why there is no reference, what to warn of, why a formulation makes no sense; empty if none of it applies.
@@ -65,7 +68,8 @@ class ChosenProblem {
   virtual ProblemInFormulation in(std::string_view formulation) const = 0;
   virtual SeriesProblem as_series() const = 0;
   virtual QuadProblem in_quad() const = 0;
-  /// Null if the integrator is refused on the formulation, or the formulation is not timed.
+  /// Null if the integrator is refused on the formulation, or the formulation is not timed, or nothing is in this build
+  /// (POLHODE_RACES).
   virtual std::unique_ptr<TimedSolve> timed(std::string_view formulation, std::string_view integrator,
                                             Plan const& plan) const = 0;
 };

@@ -7,10 +7,6 @@
 
 namespace polhode::bench {
 
-/// The state is shown beside the attitude that it describes.
-template <class A>
-constexpr bool shows_parameters = std::same_as<A, Mrp<double>> || std::same_as<A, MrpShadow<double>>;
-
 /// Thrown by a watch when a run has used up its time.
 struct Timeout {};
 
@@ -34,37 +30,6 @@ class Deadline {
   Clock::time_point end_;
   std::int64_t calls_ = 0;
 };
-
-inline Quat<Quad> widened(Quat<double> const& q) {
-  return {q.x, q.y, q.z, q.w};
-}
-inline Vec3<Quad> widened(Vec3<double> const& v) {
-  return {v.x, v.y, v.z};
-}
-
-/// One body as the metrics see it: attitude and body rate apart.
-template <Attitude A>
-BodySight sight_of(Point<A> const& x, Vec3<double> const& omega) {
-  BodySight seen{.q = widened(A::attitude(x)), .omega = widened(omega)};
-  if constexpr (std::same_as<Point<A>, Quat<double>>)
-    seen.drift = double(dot(seen.q, seen.q) - 1);
-  else if constexpr (A::constrained)
-    seen.drift = double(A::template Over<Quad>::defect({widened(x.e1), widened(x.e2), widened(x.e3)}));
-  return seen;
-}
-/// Calls f(attitude space, attitude, body rate or null) for every body of a state.
-template <SmallSpace M, class F>
-void each_attitude(Point<M> const& x, F f) {
-  f.template operator()<typename M::Factor>(x.first, &x.second);
-}
-template <PowerSpace M, class F>
-void each_attitude(Point<M> const& x, F f) {
-  for (int i = 0; i < x.count(); ++i)
-    if constexpr (Attitude<typename M::Factor>)
-      f.template operator()<typename M::Factor>(x[i], nullptr);
-    else
-      each_attitude<typename M::Factor>(x[i], f);
-}
 
 /// Thrown by a watch when a method's own steps have become so short that it would take hours.
 struct Stalled {};
@@ -118,15 +83,15 @@ class Recorder final : public Watch<M> {
     next_row_ = t + t_end_ / rows_kept * (1 - 1e-9);
   }
 
+  void multiplier(Vec3<double> const& lambda) override { multiplier_ = widened(lambda); }
+
   double reached = 0;  ///< the time of the last accepted step [s]
 
  private:
   Sight sight(double t, Point<M> const& x, Projections const& projections) {
     bodies_.clear();
-    each_attitude<M>(x, [&]<class A>(Point<A> const& attitude, Vec3<double> const* omega) {
-      bodies_.push_back(sight_of<A>(attitude, omega ? *omega : Vec3<double>{0, 0, 0}));
-    });
-    return {.t = t, .bodies = bodies_, .raw_defect = projections.raw_defect};
+    each_body<M>(x, [&]<class Body>(Point<Body> const& body) { bodies_.push_back(sight_of<Body>(body)); });
+    return {.t = t, .bodies = bodies_, .raw_defect = projections.raw_defect, .multiplier = multiplier_};
   }
   void keep(double t, Point<M> const& x) {
     std::vector<double> row;
@@ -136,18 +101,16 @@ class Recorder final : public Watch<M> {
     history_.times.push_back(t);
     history_.rows.push_back(std::move(row));
   }
-  /// Attitude, rate and, where they are the state, modified Rodrigues parameters of every body. Rates that are no state
-  /// are those that the field commands.
+  /// Every body as `simulate` shows it; rates that are no state are those that the field commands.
   void add_state(double t, Point<M> const& x, std::vector<double>& row) {
     Velocity<M> commands = shaped_like<Velocity<M>>(x);
     if constexpr (PowerSpace<M>) problem_(t, x, commands);
-    int body = 0;
-    each_attitude<M>(x, [&]<class A>(Point<A> const& attitude, Vec3<double> const* omega) {
-      Quat<double> const q = A::attitude(attitude);
-      row.insert(row.end(), {q.x, q.y, q.z, q.w});
-      if constexpr (requires { commands[body].x; }) omega = &commands[body++];
-      row.insert(row.end(), {omega->x, omega->y, omega->z});
-      if constexpr (shows_parameters<A>) row.insert(row.end(), {attitude.x, attitude.y, attitude.z});
+    int i = 0;
+    each_body<M>(x, [&]<class Body>(Point<Body> const& body) {
+      if constexpr (Attitude<Body>)
+        show_body<Body>(body, &commands[i++], row);
+      else
+        show_body<Body>(body, nullptr, row);
     });
   }
 
@@ -161,6 +124,7 @@ class Recorder final : public Watch<M> {
   bool keeps_steps_;  ///< measured runs without samples: claims want a history, methods are not to stop for it
   static constexpr int rows_kept = 20'000;
   std::vector<BodySight> bodies_;
+  std::optional<Vec3<Quad>> multiplier_;
 };
 
 }  // namespace polhode::bench

@@ -3,9 +3,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
+#include <functional>
 #include <limits>
-#include <nlohmann/json.hpp>
 
 #include "problems/exact.hpp"
 
@@ -13,40 +12,6 @@ namespace polhode::bench {
 namespace {
 
 constexpr double tolerance = 1e-34;  // of the last terms: below the rounding of the sum
-
-std::string decimal(Quad x) {
-  std::array<char, 64> text{};
-  quadmath_snprintf(text.data(), text.size(), "%.34Qe", x);
-  return text.data();
-}
-std::string hexadecimal(Quad x) {
-  std::array<char, 64> text{};
-  quadmath_snprintf(text.data(), text.size(), "%.28Qa", x);
-  return text.data();
-}
-/// Components of a state in storage order: attitude and rate of the first body, then of the next.
-std::vector<Quad> numbers(QuadState const& state, bool rates) {
-  std::vector<Quad> all;
-  for (QuadBody const& body : state) {
-    all.insert(all.end(), {body.q.x, body.q.y, body.q.z, body.q.w});
-    if (rates) all.insert(all.end(), {body.omega.x, body.omega.y, body.omega.z});
-  }
-  return all;
-}
-QuadState state_of(std::vector<Quad> const& numbers, bool rates) {
-  QuadState state;
-  for (auto n = numbers.begin(); n != numbers.end(); n += rates ? 7 : 4) {
-    state.push_back({.q = {n[0], n[1], n[2], n[3]}});
-    if (rates) state.back().omega = {n[4], n[5], n[6]};
-  }
-  return state;
-}
-template <Space M>
-constexpr bool has_rates_on = true;
-template <class A, int n>
-constexpr bool has_rates_on<Power<A, n>> = requires(typename A::Point x) {
-  x.second;
-};
 
 /// The Taylor series of one problem, from segment to segment.
 template <Space M>
@@ -141,10 +106,10 @@ Reference Reference::solve(ChosenProblem const& problem, Schedule const& schedul
   SeriesProblem const in_series = problem.as_series();
   std::visit(
       [&]<Space M>(std::unique_ptr<Erased<M>> const& field) {
-        reference.has_rates_ = has_rates_on<M>;
+        reference.layout_ = layout_of<M>();
         Expansion<M> expansion(*field, problem.info().name, schedule.t_end);
         auto const note_rate = [&] {
-          for (QuadBody const& body : state_of(expansion.state(), reference.has_rates_))
+          for (QuadBody const& body : state_of(expansion.state(), reference.layout_))
             reference.largest_rate_ = std::max(reference.largest_rate_, double(length(body.omega)));
         };
         note_rate();
@@ -166,13 +131,14 @@ QuadState Reference::at(double t) const {
   auto const& segment = after == segments_.begin() ? *after : *(after - 1);
   std::vector<Quad> values;
   for (auto const& component : segment.component) values.push_back(component.at(Quad(t) - segment.t));
-  return state_of(values, has_rates_);
+  return state_of(values, layout_);
 }
 
-double angle_between(QuadState const& a, QuadState const& b) {
-  double most = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) most = std::max(most, double(polhode::angle_between(a[i].q, b[i].q)));
-  return most;
+double distance_between(QuadState const& a, QuadState const& b, Layout const& layout) {
+  Quad most = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    most = max_of(most, layout.attitude ? angle_between(a[i].q, b[i].q) : length(a[i].omega - b[i].omega));
+  return double(most);
 }
 
 namespace {
@@ -186,7 +152,7 @@ struct KeepStops {
   void at_stop(Stop const&, Point<M> const& x) {
     std::vector<Quad> values(std::size_t(size_of(x)));
     store(x, values.data());
-    states.push_back(state_of(values, has_rates_on<M>));
+    states.push_back(state_of(values, layout_of<M>()));
   }
 };
 
@@ -222,13 +188,15 @@ std::string reference_id(results::Cell const& cell) {
 
 namespace {
 
-/// The closed form of a free body in principal axes; null for any other problem, and for initial data or signs that
-/// belong to no physical body.
-std::optional<ExactFreeBody<Quad>> closed_form_of(ChosenProblem const& problem) {
+/// The state of a problem that has a closed form, as a function of time [s]: its own, or that of a free body in
+/// principal axes. Empty for any other problem, and for initial data or signs that belong to no physical body.
+std::function<QuadState(Quad)> closed_form_of(ChosenProblem const& problem) {
+  if (problem.closed_form(0)) return [&](Quad t) { return QuadState{{.omega = *problem.closed_form(t)}}; };
   BodyParameters const* body = problem.body();
   if (!body || !problem.torque_free() || !body->principal() || body->coriolis_sign != 1 || body->raw_q0) return {};
   Vec3<Quad> const moments{body->inertia[0], body->inertia[1], body->inertia[2]};
-  return ExactFreeBody<Quad>(moments, body->attitude<Quad>(), body->rate<Quad>());
+  ExactFreeBody<Quad> const exact(moments, body->attitude<Quad>(), body->rate<Quad>());
+  return [exact](Quad t) { return QuadState{{.q = exact.at(t).first}}; };
 }
 
 }  // namespace
@@ -247,12 +215,12 @@ std::vector<QuadState> try_gauss(ChosenProblem const& problem, Schedule const& s
   }
 }
 
-/// The greatest distance of two solutions [rad]; infinite if one of them is missing.
-double largest_angle(std::vector<QuadState> const& a, std::vector<QuadState> const& b) {
+/// The greatest distance of two solutions; infinite if one of them is missing.
+double greatest_distance(std::vector<QuadState> const& a, std::vector<QuadState> const& b, Layout const& layout) {
   if (a.empty() || b.empty()) return std::numeric_limits<double>::infinity();
-  double largest = 0;
-  for (std::size_t k = 0; k < a.size(); ++k) largest = std::max(largest, angle_between(a[k], b[k]));
-  return largest;
+  double most = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) most = std::max(most, distance_between(a[k], b[k], layout));
+  return most;
 }
 
 }  // namespace
@@ -260,7 +228,7 @@ double largest_angle(std::vector<QuadState> const& a, std::vector<QuadState> con
 Certificate certify(results::Cell const& cell, ChosenProblem const& problem, Schedule const& schedule,
                     Reference const& reference) {
   Certificate certificate{.id = reference_id(cell), .subject = reference_subject(cell)};
-  certificate.has_rates = reference.has_rates();
+  Layout const layout = certificate.layout = reference.layout();
   Schedule watched = schedule;
   if (!(watched.sample_period > 0)) watched.output_period = schedule.t_end / 100;
   std::vector<Stop> const stops = stops_of(watched);
@@ -269,7 +237,7 @@ Certificate certify(results::Cell const& cell, ChosenProblem const& problem, Sch
   int divisions = int(std::ceil((stops[1].time - stops[0].time) / h - 1e-9));
   std::vector<QuadState> coarse = try_gauss(problem, watched, divisions),
                          fine = try_gauss(problem, watched, 2 * divisions);
-  for (int halvings = 0; halvings < most_halvings && !(largest_angle(coarse, fine) < good_enough); ++halvings) {
+  for (int halvings = 0; halvings < most_halvings && !(greatest_distance(coarse, fine, layout) < good_enough); ++halvings) {
     divisions *= 2;
     coarse = std::move(fine);
     fine = try_gauss(problem, watched, 2 * divisions);
@@ -282,8 +250,8 @@ Certificate certify(results::Cell const& cell, ChosenProblem const& problem, Sch
   std::size_t const every = std::max<std::size_t>(1, (stops.size() - 1) / 50);
   for (std::size_t k = 0; k < stops.size(); ++k) {
     QuadState const here = reference.at(stops[k].time);
-    certificate.disagreement = std::max(certificate.disagreement, angle_between(here, fine[k]));
-    certificate.halving = std::max(certificate.halving, angle_between(coarse[k], fine[k]));
+    certificate.disagreement = std::max(certificate.disagreement, distance_between(here, fine[k], layout));
+    certificate.halving = std::max(certificate.halving, distance_between(coarse[k], fine[k], layout));
     if (k % every != 0 && k + 1 != stops.size()) continue;
     certificate.times.push_back(stops[k].time);
     certificate.states.push_back(here);
@@ -291,107 +259,19 @@ Certificate certify(results::Cell const& cell, ChosenProblem const& problem, Sch
   certificate.bar = std::max(certificate.disagreement, certificate.halving);
   if (auto const exact = closed_form_of(problem)) {
     double worst = 0;
-    for (std::size_t k = 0; k < certificate.times.size(); ++k) {
-      Quat<Quad> const q = exact->at(certificate.times[k]).first;
-      worst = std::max(worst, double(polhode::angle_between(certificate.states[k][0].q, q)));
-    }
+    for (std::size_t k = 0; k < certificate.times.size(); ++k)
+      worst = std::max(worst, distance_between(certificate.states[k], exact(certificate.times[k]), layout));
     certificate.closed_form = worst;
     certificate.bar = std::max(certificate.bar, worst);
   }
   return certificate;
 }
 
-namespace {
-
-/// Names of the components of a state.
-std::vector<std::string> names_of(QuadState const& state, bool rates) {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < state.size(); ++i)
-    for (char const* name : {"q1", "q2", "q3", "q4", "wx", "wy", "wz"})
-      if (rates || name[0] == 'q') names.push_back(state.size() > 1 ? fmt::format("b{}.{}", i + 1, name) : name);
-  return names;
-}
-
-nlohmann::ordered_json contents_of(Certificate const& c) {
-  std::vector<std::string> methods{"Taylor, degree 32, float128, flat quaternion", "Gauss, 8 stages, float128, S3"};
-  nlohmann::ordered_json closed_form;  // null
-  if (c.closed_form) {
-    methods.emplace_back("closed form, elliptic functions, float128");
-    closed_form = *c.closed_form;
-  }
-  nlohmann::ordered_json json{{"schema", results::schema},
-                              {"kind", "reference"},
-                              {"id", c.id},
-                              {"subject", c.subject},
-                              {"methods", methods},
-                              {"bar_rad", c.bar},
-                              {"disagreement_rad", c.disagreement},
-                              {"halving_rad", c.halving},
-                              {"closed_form_rad", closed_form},
-                              {"columns", names_of(c.states.at(0), c.has_rates)}};
-  for (std::size_t k = 0; k < c.times.size(); ++k) {
-    nlohmann::ordered_json row{{"t", c.times[k]}};
-    for (Quad x : numbers(c.states[k], c.has_rates)) {
-      row["decimal"].push_back(decimal(x));
-      row["hex"].push_back(hexadecimal(x));
-    }
-    json["states"].push_back(row);
-  }
-  return json;
-}
-
-}  // namespace
-
-void save(Certificate const& certificate, std::filesystem::path const& folder) {
-  nlohmann::ordered_json json = contents_of(certificate);
-  json["hash"] = results::hash_of(json.dump());
-  std::filesystem::create_directories(folder);
-  std::filesystem::path const file = folder / (certificate.id + ".json");
-  std::ofstream out(file);
-  out << json.dump(1) << '\n';
-  if (!out.flush()) throw ReferenceError(file.string() + ": cannot be written");
-}
-
-Certificate load(std::filesystem::path const& file) {
-  auto const refuse = [&](std::string const& why) {
-    return ReferenceError(fmt::format("{}: {}; make it anew with `polhode reference`", file.string(), why));
-  };
-  try {
-    std::ifstream in(file);
-    if (!in) throw refuse("cannot be read");
-    auto json = nlohmann::ordered_json::parse(in);
-    std::string const hash = json.at("hash");
-    json.erase("hash");
-    if (results::hash_of(json.dump()) != hash)
-      throw refuse("its contents do not match their hash: it was edited or damaged");
-    Certificate c{.id = json.at("id"),
-                  .subject = json.at("subject"),
-                  .bar = json.at("bar_rad"),
-                  .disagreement = json.at("disagreement_rad"),
-                  .halving = json.at("halving_rad")};
-    // Absent in certificates made before the closed form was a witness.
-    if (auto const closed_form = json.find("closed_form_rad"); closed_form != json.end() && !closed_form->is_null())
-      c.closed_form = closed_form->get<double>();
-    std::vector<std::string> const columns = json.at("columns");
-    c.has_rates = columns.back().ends_with("wz");
-    for (auto const& row : json.at("states")) {
-      std::vector<Quad> x;
-      for (std::size_t i = 0; i < columns.size(); ++i)
-        x.push_back(strtoflt128(row.at("hex").at(i).get<std::string>().c_str(), nullptr));
-      c.times.push_back(row.at("t"));
-      c.states.push_back(state_of(x, c.has_rates));
-    }
-    return c;
-  } catch (nlohmann::json::exception const& error) {
-    throw refuse(error.what());
-  }
-}
-
 void check_fresh(Certificate const& certificate, Reference const& reference, std::filesystem::path const& file) {
   // Round-off of two builds differs: a hundred units in the last place of quadruple precision are no disagreement.
   double const room = std::max(10 * certificate.bar, 1e-30);
   for (std::size_t k = 0; k < certificate.times.size(); ++k) {
-    double const apart = angle_between(certificate.states[k], reference.at(certificate.times[k]));
+    double const apart = distance_between(certificate.states[k], reference.at(certificate.times[k]), certificate.layout);
     if (apart <= room) continue;
     throw ReferenceError(
         fmt::format("{}: stale: at t = {} s it is {:.1e} rad from the solution of today's problem; make "

@@ -9,24 +9,12 @@
 #include <string>
 #include <vector>
 
+#include "bench/certificate.hpp"
 #include "bench/problems.hpp"
 #include "integrators/taylor.hpp"
 #include "results/record.hpp"
 
 namespace polhode::bench {
-
-/// Attitude (body to inertial) and body rate [rad/s] in quadruple precision; rate 0 where it is a command, not a state.
-struct QuadBody {
-  Quat<Quad> q;
-  Vec3<Quad> omega{};
-};
-/// One or many.
-using QuadState = std::vector<QuadBody>;
-
-/// A reference file that cannot be used: damaged, edited or stale. what() names the file and the remedy.
-struct ReferenceError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 /// A problem whose solution cannot be certified: too stiff, or without a series. what() says why.
 struct Uncertified : ReferenceError {
@@ -44,36 +32,23 @@ class Reference {
   double t_end() const { return t_end_; }
   /// max |omega| over the stops and segments [rad/s]: the scale of the rate error.
   double largest_rate() const { return largest_rate_; }
-  /// Body rates are a part of the state.
-  bool has_rates() const { return has_rates_; }
+  Layout const& layout() const { return layout_; }
   /// Zeros of the switching functions, in order [s].
   std::vector<double> const& event_times() const { return event_times_; }
 
  private:
   std::vector<TaylorSegment<Quad, 32>> segments_;
   double t_end_ = 0, largest_rate_ = 0;
-  bool has_rates_ = true;
+  Layout layout_;
   std::vector<double> event_times_;
 };
 
-/// How far the attitudes of the same body are apart [rad], at most.
-double angle_between(QuadState const& a, QuadState const& b);
+/// How far two states are apart: the greatest angle between the attitudes of the same body [rad]; without attitudes, the
+/// greatest distance of the rates.
+double distance_between(QuadState const& a, QuadState const& b, Layout const& layout);
 
 /// States of the same problem at its stops, by 8-stage Gauss on S3 with `divisions` steps from stop to stop.
 std::vector<QuadState> solve_by_gauss(ChosenProblem const& problem, Schedule const& schedule, int divisions);
-
-/// A reference with its proof.
-struct Certificate {
-  std::string id;  ///< hash of `subject`: problem, variant, parameters, horizon
-  std::string subject;
-  double bar = 0;                        ///< [rad]
-  double disagreement = 0, halving = 0;  ///< two of its parts [rad]
-  /// The third: Taylor against the closed form [rad]; null if the problem is not a free body in principal axes.
-  std::optional<double> closed_form{};
-  bool has_rates = true;        ///< of the states: see Reference
-  std::vector<double> times{};  ///< where the states are stored [s]
-  std::vector<QuadState> states{};
-};
 
 /// The canonical text of what a reference belongs to: a cell without its method.
 std::string reference_subject(results::Cell const& cell);
@@ -84,10 +59,6 @@ std::string reference_id(results::Cell const& cell);
 Certificate certify(results::Cell const& cell, ChosenProblem const& problem, Schedule const& schedule,
                     Reference const& reference);
 
-/// results/reference/ID.json: decimal digits and hex floats, bar, hash of the contents.
-void save(Certificate const& certificate, std::filesystem::path const& folder);
-/// Reads it back. Throws ReferenceError if it is damaged or was edited by hand.
-Certificate load(std::filesystem::path const& file);
 /// Throws ReferenceError if the stored states are further from `reference` than the bar allows.
 void check_fresh(Certificate const& certificate, Reference const& reference, std::filesystem::path const& file);
 

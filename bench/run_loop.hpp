@@ -115,6 +115,7 @@ class RunLoop {
         if (Status const status = locate(t, x, crossed); status != Status::ok) return status;
       if (!crossed) ++i;
       on_grid = !crossed;
+      if constexpr (requires { watch.multiplier(stepper_.multiplier()); }) watch.multiplier(stepper_.multiplier());
       if constexpr (std::decay_t<Watch>::each_step) watch.after_step(t, x, stepper_.projections());
       if constexpr (Singular<M> && std::decay_t<Watch>::each_step)
         if (M::singular(x)) return Status::diverged;

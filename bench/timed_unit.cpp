@@ -60,7 +60,7 @@ template <class F, class Method>
 std::unique_ptr<TimedSolve> timed_on(D const& definition, Plan const& plan) {
   using P = decltype(definition.template field<double, F::template On, true>());
   if constexpr (refusal<typename P::Space>(Method::info.needs).empty() && Method::info.not_built.empty()) {
-    if (!is_principal(definition)) return nullptr;
+    if (!is_principal(definition) || !is_plain(definition)) return nullptr;
     P const problem = definition.template field<double, F::template On, true>();
     if constexpr (RunsFixed<Method, P>)
       if (std::holds_alternative<FixedStep>(plan.control)) return make<FixedStep, Method>(problem, plan);

@@ -39,12 +39,13 @@ struct Work {
   std::int64_t rejected = 0;
   std::optional<std::int64_t> iterations;  ///< sweeps of a fixed point, or nonlinear iterations; null if explicit
   std::optional<std::int64_t> jacobians;   ///< null for methods that use none
+  std::int64_t evaluations = 0;            ///< of forces, by methods that do not call the field
 };
 
 enum class Family { explicit_rk, gauss, lie_group, rigid_body, splitting, exact, taylor, library };
 
 /// What a method asks of a problem or its space. Refusals are rows, with this as their reason.
-enum class Needs { none, flat, group, free_body };
+enum class Needs { none, flat, group, free_body, constraint, constraint_on_group, constraint_on_quaternion };
 
 /// What a method keeps to round-off or boundedly; a claim that the tests measure. Combine with |.
 enum Preserves : unsigned {
@@ -91,9 +92,23 @@ concept RunsAdaptive = Problem<P> && requires(I method, P const& p) {
 template <class I, class P>
 concept IntegratorFor = RunsFixed<I, P> || RunsAdaptive<I, P>;
 
+/// The attitude, body rate, position and velocity of one body: where constrained problems live.
+template <class M>
+inline constexpr bool is_moving_body = false;
+template <Attitude A>
+inline constexpr bool is_moving_body<MovingBody<A>> = true;
+
 /// Why a method cannot run on a space; empty if it can.
 template <class M>
 constexpr std::string_view refusal(Needs needs) {
+  if (needs == Needs::constraint || needs == Needs::constraint_on_group || needs == Needs::constraint_on_quaternion) {
+    if (!is_moving_body<M>) return "needs a constrained problem (heavy_top, variant dae)";
+    if (needs == Needs::constraint_on_group) return refusal<M>(Needs::group);
+    if constexpr (is_moving_body<M>)
+      if (needs == Needs::constraint_on_quaternion && !(M::flat && Point<typename M::Factor::Factor>::size == 4))
+        return "needs flat quaternions (formulation quaternion)";
+    return "";
+  }
   if (needs == Needs::flat && !M::flat) return "needs flat coordinates";
   if (needs == Needs::group && M::flat) return "needs a rotation group (formulation s3 or so3)";
   return "";
@@ -166,8 +181,12 @@ class Fixed {
     Work work;
     work.steps = steps_;
     if constexpr (requires { memory_.iterations; }) work.iterations = memory_.iterations;
+    if constexpr (requires { memory_.evaluations; }) work.evaluations = memory_.evaluations;
     return work;
   }
+  /// The constraint's multiplier at the end of the last step.
+  auto const& multiplier() const requires requires(typename Method::template Memory<M> const& m) { m.multiplier; }
+  { return memory_.multiplier; }
   Projections projections() const { return projections_; }
 
  private:

@@ -4,9 +4,13 @@
 #include "problems/dead_zone.hpp"
 #include "problems/formulations.hpp"
 #include "problems/free_body.hpp"
+#include "problems/gravity_gradient.hpp"
 #include "problems/group_consensus.hpp"
+#include "problems/heavy_top.hpp"
+#include "problems/krogh_b5.hpp"
 #include "problems/pd_slew.hpp"
 #include "problems/quaternion_sync.hpp"
+#include "problems/so3_cooperative.hpp"
 #include "problems/tether_capture.hpp"
 
 namespace polhode {
@@ -16,10 +20,14 @@ namespace polhode {
 using Problems = Types<
     FreeBody,
     PdSlew,
+    HeavyTop,
+    GravityGradient,
+    KroghB5,
     TetherCapture,
     DeadZone,
     QuaternionSync,
-    GroupConsensus
+    GroupConsensus,
+    So3Cooperative
     >;
 // clang-format on
 

@@ -67,6 +67,8 @@ struct History {
 ///   refusal(formulation)   why this choice makes no sense in one of them
 ///   principal()            the fast form of the inertia serves
 ///   body()                 the rigid body, if it is one
+///   constrained(), pinned<S>()  a body under a constraint, if the choice has one
+///   closed_form(t)         of a state of three numbers
 ///   switches()             the field has kinks or jumps in the state
 ///   locate_events          false: let methods run over them
 ///   no_reference()         why there is no solution to hold a run against
@@ -98,6 +100,21 @@ BodyParameters const* body_of(D const& definition) {
     return &definition.body();
   else
     return nullptr;
+}
+/// The body under a constraint, if the choice has one.
+template <Scalar S, Definition D>
+std::optional<PinnedBody<S>> pinned_of(D const& definition) {
+  if constexpr (requires { definition.template pinned<S>(); })
+    if (definition.constrained()) return definition.template pinned<S>();
+  return {};
+}
+/// The three numbers of a state without attitude at time t [s], if they have a closed form.
+template <Definition D>
+std::optional<Vec3<Quad>> closed_form_of(D const& definition, Quad t) {
+  if constexpr (requires { definition.closed_form(t); })
+    return definition.closed_form(t);
+  else
+    return {};
 }
 /// The field is smooth unless the definition says otherwise.
 template <Definition D>

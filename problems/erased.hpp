@@ -8,13 +8,27 @@
 #include <span>
 #include <vector>
 
+#include "problems/pinned_body.hpp"
 #include "problems/problem.hpp"
 
 namespace polhode {
 
+/// What the problems of one space show beside what all have: nothing,
+template <class M>
+class ErasedExtras {};
+/// or the mechanics of a constrained body, for methods that solve for the constraint.
+template <Attitude A>
+class ErasedExtras<MovingBody<A>> {
+ public:
+  virtual PinnedBody<typename A::Scalar> const& mechanics() const = 0;
+
+ protected:
+  ~ErasedExtras() = default;
+};
+
 /// What the run loop needs of a problem on space M.
 template <Space M>
-class Erased {
+class Erased : public ErasedExtras<M> {
  public:
   using Space = M;
   using S = typename M::Scalar;
@@ -55,13 +69,31 @@ class Erased {
   mutable std::int64_t evaluations_ = 0;
 };
 
+/// Owns a problem, and shows what only those of its space show.
+template <Problem P, class M = typename P::Space>
+class Erasing : public Erased<M> {
+ protected:
+  explicit Erasing(P problem) : problem_(std::move(problem)) {}
+  P problem_;
+};
+template <Problem P, Attitude A>
+class Erasing<P, MovingBody<A>> : public Erased<MovingBody<A>> {
+ public:
+  PinnedBody<typename A::Scalar> const& mechanics() const override { return problem_.mechanics(); }
+
+ protected:
+  explicit Erasing(P problem) : problem_(std::move(problem)) {}
+  P problem_;
+};
+
 template <Problem P>
-class ErasedAs final : public Erased<typename P::Space> {
+class ErasedAs final : public Erasing<P> {
   using M = typename P::Space;
   using S = typename M::Scalar;
+  using Erasing<P>::problem_;
 
  public:
-  explicit ErasedAs(P problem) : problem_(std::move(problem)) {}
+  explicit ErasedAs(P problem) : Erasing<P>(std::move(problem)) {}
   Point<M> initial() const override { return problem_.initial(); }
   void sample([[maybe_unused]] Real<S> const& t, [[maybe_unused]] Point<M> const& x) override {
     if constexpr (SampledProblem<P>) problem_.sample(t, x);
@@ -108,9 +140,6 @@ class ErasedAs final : public Erased<typename P::Space> {
     else
       v = problem_(t, x);
   }
-
- private:
-  P problem_;
 };
 
 template <Problem P>

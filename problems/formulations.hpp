@@ -13,6 +13,20 @@ struct Types {
   static constexpr int size = sizeof...(T);
 };
 
+namespace detail {
+template <class... List>
+struct Join;
+template <class... T>
+struct Join<Types<T...>> {
+  using type = Types<T...>;
+};
+template <class... A, class... B, class... List>
+struct Join<Types<A...>, Types<B...>, List...> : Join<Types<A..., B...>, List...> {};
+}  // namespace detail
+/// Lists of types, one after the other.
+template <class... List>
+using Joined = typename detail::Join<List...>::type;
+
 /// A formulation: an attitude space, as a type that a list can hold.
 template <template <class> class A>
 struct Formulation {

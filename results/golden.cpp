@@ -141,7 +141,10 @@ std::vector<std::string> const& golden_columns() {
                                                 "rate_error_end",
                                                 "energy_drift_max",
                                                 "momentum_drift_max",
-                                                "momentum_direction_max"};
+                                                "momentum_direction_max",
+                                                "position_defect_max",
+                                                "velocity_defect_max",
+                                                "multiplier_error_max"};
   return columns;
 }
 

@@ -393,10 +393,14 @@ std::string kind_of(Json const& json) {
 }
 
 Record record_from_json(Json const& json) {
+  // Younger than the schema: files from before do not have them, which says the same as null.
+  constexpr std::array<std::string_view, 4> younger{"position_defect_max", "velocity_defect_max",
+                                                    "acceleration_defect_max", "multiplier_error_max"};
   Members members = open(json, "run");
   Record record;
-  for_each_field(record, [&](char const* name, std::string_view, auto& member) {  //
-    decode(members.take(name), name, member);
+  for_each_field(record, [&](char const* name, std::string_view, auto& member) {
+    bool const may_miss = std::ranges::find(younger, name) != younger.end();
+    if (!may_miss || json.contains(name)) decode(members.take(name), name, member);
   });
   members.nothing_left();
   return record;

@@ -109,6 +109,9 @@ struct Record {
   // Invariants of a torque-free body: relative; the direction of the angular momentum in rad.
   std::optional<double> energy_drift_max, momentum_drift_max, momentum_direction_max;
 
+  // A constraint in space and its hidden ones: [m], [m/s], [m/s^2]; its multiplier, relative to the greatest.
+  std::optional<double> position_defect_max, velocity_defect_max, acceleration_defect_max, multiplier_error_max;
+
   std::string reference;                ///< id of the reference
   std::optional<double> reference_bar;  ///< its error bar [rad]
 
@@ -148,6 +151,10 @@ void for_each_field(R& r, Visit&& visit) {
   visit("energy_drift_max", "", r.energy_drift_max);
   visit("momentum_drift_max", "", r.momentum_drift_max);
   visit("momentum_direction_max", "rad", r.momentum_direction_max);
+  visit("position_defect_max", "m", r.position_defect_max);
+  visit("velocity_defect_max", "m/s", r.velocity_defect_max);
+  visit("acceleration_defect_max", "m/s^2", r.acceleration_defect_max);
+  visit("multiplier_error_max", "", r.multiplier_error_max);
   visit("reference", "", r.reference);
   visit("reference_bar", "rad", r.reference_bar);
   visit("claims", "", r.claims);

@@ -57,7 +57,7 @@ struct Seen {
   operator Sight() const { return {.t = t, .bodies = std::span(&body, 1), .raw_defect = raw_defect}; }
 };
 Seen sight(double t, Quat<Quad> const& q, Vec3<Quad> const& w = omega) {
-  return {.t = t, .body = {.q = q, .omega = w, .drift = double(dot(q, q) - 1)}};
+  return {.t = t, .body = {{.q = q, .omega = w}, double(dot(q, q) - 1)}};
 }
 Seen drifting(double t, double drift) {
   Seen seen = sight(t, exact(t));

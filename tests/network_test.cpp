@@ -108,6 +108,7 @@ TEST(Formulations, OfOneBodyAgree) {
 
 // ---- Cost -----------------------------------------------------------------------------------------------------------
 
+#ifdef POLHODE_RACES
 /// Bytes that a solve of n craft asks for, from the choice of the problem to its end.
 std::int64_t bytes_for(int n, std::string const& formulation, std::string const& integrator) {
   auto const before = bench::allocated_bytes_of_this_thread();
@@ -127,6 +128,7 @@ TEST(NetworkCost, MemoryIsLinearInTheCraft) {
     EXPECT_LT(many / 20'000, 4000) << integrator << ": bytes a craft";
   }
 }
+#endif
 
 TEST(NetworkCost, ALargeNetworkHasNoReferenceButDriftAndClaims) {
   auto const measured = a_cell("quaternion_sync", "quaternion", "rk4").set("n", {1000}).with_h(0.1).until(1).measured();

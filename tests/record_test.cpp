@@ -68,6 +68,10 @@ Record full_record() {
   record.energy_drift_max = 11.5;
   record.momentum_drift_max = 12.5;
   record.momentum_direction_max = 13.5;
+  record.position_defect_max = 14.5;
+  record.velocity_defect_max = 15.5;
+  record.acceleration_defect_max = 16.5;
+  record.multiplier_error_max = 17.5;
   record.reference = "ref";
   record.reference_bar = 1e-30;
   record.claims["alpha"] = Claim{0.1, 0.2, "not reproduced"};
@@ -86,7 +90,8 @@ std::string const full_text =
     R"("norm_drift_max":1.5,"norm_drift_final":-2.5,"norm_drift_rms":3.5,"norm_growth_exponent":4.5,)"
     R"("projection_work":5.5,"attitude_error_max":6.5,"attitude_error_end":7.5,"attitude_error_l2":8.5,)"
     R"("rate_error_max":9.5,"rate_error_end":10.5,"energy_drift_max":11.5,"momentum_drift_max":12.5,)"
-    R"("momentum_direction_max":13.5,"reference":"ref","reference_bar":1e-30,)"
+    R"("momentum_direction_max":13.5,"position_defect_max":14.5,"velocity_defect_max":15.5,)"
+    R"("acceleration_defect_max":16.5,"multiplier_error_max":17.5,"reference":"ref","reference_bar":1e-30,)"
     R"("claims":{"alpha":{"value":0.1,"published":0.2,"verdict":"not reproduced"},)"
     R"("statement":{"value":1.0,"published":null,"verdict":"reproduced"}},)"
     R"("cpu_time_s":{"median":1.25,"low":1.0,"high":1.5,"repetitions":5},"allocations_per_step":14.5})";

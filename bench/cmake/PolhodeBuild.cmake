@@ -7,7 +7,9 @@ set(POLHODE_WARNINGS -Wall -Wextra -Wpedantic -Wconversion -Wshadow -Wno-restric
 
 find_program(CCACHE ccache)
 if(CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE})
+  # Paths count from the source folder, so that two clones of one version compile it once.
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1
+                                  ${CCACHE})
 endif()
 
 # The arithmetic, the warnings and the include root of everything we write.
