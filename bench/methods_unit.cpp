@@ -23,7 +23,7 @@ Outcome solve(Erased<M>& problem, Plan const& plan, Watch<M>& watch) {
     outcome.work.steps -= outcome.located.trials;
     outcome.work.rejected += outcome.located.trials;
     outcome.projections = stepper.projections();
-    outcome.evaluations = problem.evaluations();
+    outcome.evaluations = problem.evaluations() + outcome.work.evaluations;
     return outcome;
   });
 }

@@ -233,7 +233,8 @@ Certificate certify(results::Cell const& cell, ChosenProblem const& problem, Sch
   if (!(watched.sample_period > 0)) watched.output_period = schedule.t_end / 100;
   std::vector<Stop> const stops = stops_of(watched);
   // A turn of 0.15 rad a step brings order 16 to 33 digits; stiff loops need smaller steps still.
-  double const h = std::min(0.5, 0.15 / std::max(reference.largest_rate(), 1e-3));
+  double const longest = std::max(0.5, schedule.t_end / 300);
+  double const h = std::min(longest, 0.15 / std::max(reference.largest_rate(), 1e-3));
   int divisions = int(std::ceil((stops[1].time - stops[0].time) / h - 1e-9));
   std::vector<QuadState> coarse = try_gauss(problem, watched, divisions),
                          fine = try_gauss(problem, watched, 2 * divisions);
