@@ -197,7 +197,14 @@ std::vector<Method> read_methods(Toml const& sweep, Vocabulary const& vocabulary
   std::vector<IntegratorWord const*> integrators;
   for (auto const* item : items(axis, "integrator")) {
     auto const name = text(*item, "integrator");
-    integrators.push_back(located(*item, [&] { return &vocabulary.integrator(name); }));
+    if (!is_glob(name)) {
+      integrators.push_back(located(*item, [&] { return &vocabulary.integrator(name); }));
+      continue;
+    }
+    std::size_t const before = integrators.size();
+    for (IntegratorWord const& word : vocabulary.integrators)
+      if (glob(name, word.name)) integrators.push_back(&word);
+    if (integrators.size() == before) fail(*item, "integrator: no name matches " + name);
   }
   auto const controls = read_controls(sweep);
   check_product(sweep, integrators.size(), controls.size());

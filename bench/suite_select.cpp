@@ -11,10 +11,6 @@
 #include <sstream>
 
 namespace polhode::bench {
-namespace {
-
-using results::Cell;
-using Words = std::vector<std::string>;
 
 bool glob(std::string const& pattern, std::string const& text) {
   return fnmatch(pattern.c_str(), text.c_str(), 0) == 0;
@@ -23,6 +19,11 @@ bool glob(std::string const& pattern, std::string const& text) {
 bool is_glob(std::string_view pattern) {
   return pattern.find_first_of("*?[") != std::string_view::npos;
 }
+
+namespace {
+
+using results::Cell;
+using Words = std::vector<std::string>;
 
 std::optional<double> as_number(std::string_view text) {
   double value = 0;

@@ -8,6 +8,11 @@
 
 namespace polhode::bench {
 
+/// The pattern has wildcards: * ? [.
+bool is_glob(std::string_view pattern);
+/// The text matches the pattern as the shell understands it.
+bool glob(std::string const& pattern, std::string const& text);
+
 /// The keys of a selector: the fields of a cell, and "tag".
 std::vector<std::string> const& selector_keys();
 

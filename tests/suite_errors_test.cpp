@@ -93,6 +93,7 @@ TEST(BadSuite, Words) {
        "FILE:3: unknown problem 'fre_body'; did you mean 'free_body'?"},
       {sweep("problem = 'free_body'\nintegrator = ['rk4',\n 'gaus2']\nh = 0.1\n"),
        "FILE:5: unknown integrator 'gaus2'; did you mean 'gauss2'?"},
+      {sweep("problem = 'free_body'\nintegrator = 'x*'\nh = 0.1\n"), "FILE:4: integrator: no name matches x*"},
       {sweep("problem = []\nintegrator = 'rk4'\nh = 0.1\n"),
        "FILE:3: problem: empty list; give at least one value or leave the key out"},
       {sweep("problem = [['free_body']]\nintegrator = 'rk4'\nh = 0.1\n"),

@@ -177,6 +177,11 @@ h = 0.5
   EXPECT_EQ(listed(suite, [](auto const& cell) { return cell.variant; }), (Texts{"case1,g1", "case2,g1,as_printed"}));
 }
 
+TEST(GoodSuite, WildcardsStandForEveryIntegratorThatMatches) {
+  auto const suite = read(sweep("problem = 'pd_slew'\nintegrator = ['[rg]*', 'rk4']\nh = 0.5\n"));
+  EXPECT_EQ(listed(suite, [](auto const& cell) { return cell.integrator; }), (Texts{"rk4", "gauss2"}));
+}
+
 TEST(GoodSuite, DuplicatesUniteTheirTags) {
   std::string const second =
       "[[sweep]]\nproblem = 'free_body'\nintegrator = 'rk4'\nformulation = 's3'\nh = [0.1, 0.2]\n";
