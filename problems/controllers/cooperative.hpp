@@ -1,10 +1,12 @@
 #pragma once
-/// Cooperative sliding-mode laws on SO(3): the attitude that a craft makes of those that it hears, its errors, and three
-/// ways to a sliding surface.
+/// Cooperative sliding-mode laws on SO(3): the attitude that a craft makes of those that it hears, its errors, and
+/// three ways to a sliding surface.
+///
 /// Source: Ma, Dong, Ma & Wang (2018), "SO(3)-based cooperative attitude control of multiple spacecraft", Journal of
-///         Astronautics 39(6), 664, doi 10.3873/j.issn.1000-1328.2018.06.009
-/// The text at hand has lost its equations. Printed: graph, K1, K2, P1, P2, the power |s|^(1/2) sgn(s). Chosen: the form
-/// of the command, rho, delta, the far surface, methods 2 and 3. Deduced: the cross term X.
+/// Astronautics 39(6), 664, doi 10.3873/j.issn.1000-1328.2018.06.009
+///
+/// The text at hand has lost its equations. Printed: graph, K1, K2, P1, P2, the power |s|^(1/2) sgn(s). Chosen: the
+/// form of the command, rho, delta, the far surface, methods 2 and 3. Deduced: the cross term X.
 ///
 /// Frames as in attitude.hpp: R maps body to inertial components.   P = R^T R_d,  Q = P^T
 #include <array>
@@ -103,8 +105,9 @@ struct CooperativeErrors {
   S cosine() const { return Real<S>(0.5) * (trace() - S(1.0)); }
 };
 
-/// theta / sin(theta) of sin^2(theta) = z and cos(theta) = c, which may have a common factor's root too much: a matrix
-/// that has drifted. Below 7 deg by the series of the arc tangent of tan(theta / 4), smooth through 0.
+/// theta over the sine of theta, from sine^2 = z and cosine = c. Of a matrix that has drifted sine and cosine are both
+/// too large or too small: theta is that of their ratio. Below 7 deg by the series of 4 atan(tan(theta / 4)), which is
+/// smooth through 0.
 template <class S>
 S angle_over_sine(S const& z, S const& c) {
   using R = Real<S>;
@@ -112,9 +115,9 @@ S angle_over_sine(S const& z, S const& c) {
     S const sine = sqrt(z);
     return atan2(sine, c) / sine;
   }
-  S const one(1.0), half = one / (sqrt(z + c * c) + c);       // tan(theta / 2) over the sine
+  S const one(1.0), half = one / (sqrt(z + c * c) + c);          // tan(theta / 2) over the sine
   S const quarter = half / (one + sqrt(one + z * half * half));  // tan(theta / 4) over the sine
-  S const y = z * quarter * quarter;                          // below 1e-3
+  S const y = z * quarter * quarter;                             // below 1e-3
   S series(0.0);
   for (int k = 11; k >= 0; --k) series = S(R(1.0) / R(double(2 * k + 1))) - y * series;
   return R(4.0) * quarter * series;
