@@ -1,0 +1,240 @@
+#pragma once
+/// Adaptive steps on a group: the commutator-free pair of orders 4 and 3, its error measured in the chart around the
+/// new point. Use where the attitude must remain an attitude and the time scale changes; it keeps the norm, not the
+/// energy. Sources: Curry & Owren (2019), Numerical Algorithms 82, 1359 (variable steps); the pair as in Celledoni,
+/// Cokaj, Leone, Murari & Owren (2022), Int. J. Comput. Math. 99, 58; step control: Hairer, Norsett & Wanner I, II.4
+#include <algorithm>
+#include <limits>
+
+#include "integrators/commutator_free.hpp"
+
+namespace polhode {
+
+///   0   |
+///   1/2 |  1/2
+///   1/2 |   0    1/2
+///   1   |  1/2                        from the start, which is the second point
+///       | -1/2    0     1
+///   3/4 |   0    3/4
+///       |  1/4   1/6   1/6 -1/12      order 4: cf4
+///       | -1/12  1/6   1/6  1/4
+///       |  1/3                        order 3
+///       | -1/9   1/3    0     0   4/9
+struct Cf43Tableau {
+  static constexpr int stages = 5, order = 4;
+  static constexpr bool keeps_second = true;
+  static constexpr Quad c[5] = {0, Quad(1) / 2, Quad(1) / 2, 1, Quad(3) / 4};
+  static constexpr ExponentialProduct<5, 2> product[6] = {
+      {false, 1, {{{Quad(1) / 2}}}},
+      {false, 1, {{{0, Quad(1) / 2}}}},
+      {true, 1, {{{Quad(-1) / 2, 0, 1}}}},
+      {false, 1, {{{0, Quad(3) / 4}}}},
+      {false,
+       2,
+       {{{Quad(1) / 4, Quad(1) / 6, Quad(1) / 6, Quad(-1) / 12},
+         {Quad(-1) / 12, Quad(1) / 6, Quad(1) / 6, Quad(1) / 4}}}},
+      {false, 2, {{{Quad(1) / 3}, {Quad(-1) / 9, Quad(1) / 3, 0, 0, Quad(4) / 9}}}}};
+};
+
+/// The two factors of a product.
+template <class M>
+struct FactorsOf {};
+template <SmallSpace A, SmallSpace B>
+struct FactorsOf<Product<A, B>> {
+  using First = A;
+  using Second = B;
+};
+
+/// f(e, size) for every coordinate of e in a chart, size being what a relative tolerance refers to: the greater
+/// magnitude at a and b on a flat space, 1 rad on a group.
+template <Space M, class F>
+void each_with_size(F const& f, Chart<M> const& e, Point<M> const& a, Point<M> const& b) {
+  using S = typename M::Scalar;
+  if constexpr (PowerSpace<M>) {
+    for (int i = 0; i < e.count(); ++i) each_with_size<typename M::Factor>(f, e[i], a[i], b[i]);
+  } else if constexpr (M::flat) {
+    Chart<M>::each([&](S const& part, S const& p, S const& q) { f(part, max_of(abs_of(p), abs_of(q))); }, e, a, b);
+  } else if constexpr (requires { typename FactorsOf<M>::First; }) {
+    each_with_size<typename FactorsOf<M>::First>(f, e.first, a.first, b.first);
+    each_with_size<typename FactorsOf<M>::Second>(f, e.second, a.second, b.second);
+  } else {
+    Chart<M>::each([&](S const& part) { f(part, S(1.0)); }, e);
+  }
+}
+
+/// Drives a pair that needs no flat coordinates, with error control per coordinate, RMS:
+///
+///   |e| <= atol + rtol 1 rad               for a rotation vector e between the two solutions
+///   |e| <= atol + rtol max(|y|, |y_new|)   for body rates and all that is flat
+///
+/// Steps change as in DOPRI5: proportional and integral, 0.9 of what the error allows, at most 10 times longer.
+///
+/// fails  Status::step_underflow if the step falls below 10 ulp of t, Status::max_steps after `most` trial steps in one
+///        advance, Status::diverged if the state or its slope is not finite
+template <class Pair, Problem P>
+class ControlledInCharts {
+  using M = typename P::Space;
+  using S = typename M::Scalar;
+  using R = Real<S>;
+
+ public:
+  ControlledInCharts(Pair pair, P const& problem, Adaptive control, NormPolicy policy)
+      : pair_(std::move(pair)), problem_(&problem), control_(control), policy_(policy), frame_(shape_of(problem)) {
+    if constexpr (PowerSpace<M>) {
+      slope_ = error_ = shaped_like<Chart<M>>(problem.initial());
+      y_ = problem.initial();
+    }
+  }
+
+  Status advance(Point<M>& x, R t, R t_end) {
+    for (std::int64_t trials = work_.steps + work_.rejected; t < t_end;) {
+      if (Status const status = step(x, t, t_end); status != Status::ok) return status;
+      if (work_.steps + work_.rejected - trials > most) return Status::max_steps;
+    }
+    return Status::ok;
+  }
+  /// One accepted step, not beyond t_end; t moves.
+  Status step(Point<M>& x, R& t, R t_end) {
+    slope_at(t, x, slope_);
+    if (!all_finite(slope_)) return Status::diverged;
+    if (!(R(0.0) < h_)) h_ = starting_step(x, t, t_end - t);
+    bool rejected_before = false;
+    for (std::int64_t trial = 0; trial < most; ++trial) {
+      R const left = t_end - t;
+      bool const last = h_ * R(1.0 + 1e-10) >= left;
+      R const h = last ? left : h_;
+      if (double(h) <= 10 * std::numeric_limits<double>::epsilon() * std::fabs(double(t)) && !last)
+        return Status::step_underflow;
+      auto&& frame = frame_.open();
+      frame.k[0] = slope_;
+      pair_.attempt(*problem_, t, h, x, frame, y_, error_);
+      double const size = norm(error_, x, y_);
+      if (!std::isfinite(size)) {
+        if (++work_.rejected; !all_finite(x)) return Status::diverged;
+        h_ = h * R(0.1);
+        rejected_before = true;
+        continue;
+      }
+      double const exponent = 1.0 / pair_.order - 0.03;
+      if (size <= 1) {
+        // 0.75 of the plain exponent, and the last error's memory: the PI constants of DOPRI5 (beta = 0.04).
+        double const factor = std::pow(size, exponent) / std::pow(last_size_, 0.04);
+        double const growth = std::clamp(0.9 / std::max(factor, 1e-10), 0.2, 10.0);
+        // A step cut short by t_end says little about the next one.
+        if (!last || h == h_ || growth < 1) h_ = h * R(rejected_before ? std::min(growth, 1.0) : growth);
+        last_size_ = std::max(size, 1e-4);
+        x = y_;
+        t = last ? t_end : R(t + h);
+        ++work_.steps;
+        if (policy_ != NormPolicy::none) projections_.template apply<M>(x, policy_);
+        return Status::ok;
+      }
+      ++work_.rejected;
+      rejected_before = true;
+      h_ = h * R(std::max(0.2, 0.9 / std::pow(size, exponent)));
+    }
+    return Status::max_steps;
+  }
+  /// The error's memory is forgotten, the step size is kept: the field jumped, the time scale hardly did.
+  void restart() { last_size_ = 1e-4; }
+  /// A new run: the step size is forgotten, too.
+  void begin() {
+    restart();
+    h_ = R(0.0);
+  }
+  Work work() const { return work_; }
+  Projections projections() const { return projections_; }
+
+ private:
+  static constexpr std::int64_t most = 10'000'000;
+
+  /// RMS of an error in units of what is allowed.
+  double norm(Chart<M> const& error, Point<M> const& x, Point<M> const& y) const {
+    double sum = 0;
+    each_with_size<M>(
+        [&](S const& e, S const& size) {
+          double const part = double(e) / (control_.atol + control_.rtol * double(size));
+          sum += part * part;
+        },
+        error, x, y);
+    return std::sqrt(sum / size_of(error));
+  }
+  /// Hairer, Norsett & Wanner I, II.4, "starting step size", in the chart around x.
+  R starting_step(Point<M> const& x, R const& t, R const& longest) {
+    double squares = 0;
+    each_with_size<M>(
+        [&](S const&, S const& size) {
+          double const part = double(size) / (control_.atol + control_.rtol * double(size));
+          squares += part * part;
+        },
+        slope_, x, x);
+    double const size = std::sqrt(squares / size_of(slope_)), speed = norm(slope_, x, x);
+    double h = size < 1e-5 || speed < 1e-5 ? 1e-6 : 0.01 * size / speed;
+    h = std::min(h, double(longest));
+    auto&& frame = frame_.open();
+    displace<M>(
+        x, [&](auto& u, auto const& at) { add(u, R(h), at(slope_)); }, frame.k[0], y_);
+    slope_at(R(t + R(h)), y_, error_);
+    add(error_, R(-1.0), slope_);
+    double const greatest = std::max(speed, norm(error_, x, x) / h);
+    double const h1 = greatest <= 1e-15 ? std::max(1e-6, h * 1e-3) : std::pow(0.01 / greatest, 1.0 / pair_.order);
+    return R(std::min({100 * h, h1, double(longest)}));
+  }
+  void slope_at(R const& t, Point<M> const& x, Chart<M>& k) {
+    auto&& frame = frame_.open();
+    slope(*problem_, S(t), x, frame.v, k);
+  }
+
+  Pair pair_;
+  P const* problem_;
+  Adaptive control_;
+  NormPolicy policy_;
+  Workspace<M, typename Pair::template Frame<M>> frame_;
+  Chart<M> slope_, error_;
+  Point<M> y_;
+  R h_ = R(0.0);
+  double last_size_ = 1e-4;
+  Work work_;
+  Projections projections_;
+};
+
+/// order 4, error estimate of order 3; 5 evaluations, 8 exponentials an accepted step, an evaluation less if rejected
+struct CommutatorFreeAdaptive {
+  static constexpr MethodInfo info{
+      .name = "cf_adaptive",
+      .family = Family::lie_group,
+      .needs = Needs::group,
+      .preserves = keeps_norm,
+      .source =
+          "Curry & Owren (2019), Numer. Algorithms 82, 1359; Celledoni et al. (2022), Int. J. Comput. Math. 99, 58",
+      .pitfall = "a tolerance bounds the local error, not the attitude error; relative to 1 rad of rotation"};
+  static constexpr int order = 4;
+
+  template <Problem P>
+    requires(!P::Space::flat)
+  auto bind(P const& p, Adaptive control, NormPolicy policy) const {
+    return ControlledInCharts<CommutatorFreeAdaptive, P>(*this, p, control, policy);
+  }
+
+  template <Space M>
+  using Frame = typename Exponentials<Cf43Tableau>::template Frame<M>;
+
+  /// One trial step from x, whose slope is frame.k[0]; writes the new point and, in the chart around it, how far the
+  /// solution of order 3 is from it.
+  template <Problem P, class M = typename P::Space, class R = Real<typename M::Scalar>>
+  void attempt(P const& p, R const& t, R const& h, Point<M> const& x, Frame<M>& frame, Point<M>& y,
+               Chart<M>& error) const {
+    using Method = Exponentials<Cf43Tableau>;
+    using Body = typename BodyOf<M>::type;
+    Method::stages(p, typename M::Scalar(t), h, x, frame);
+    Method::template move<M, 4>(x, h, frame, y);
+    Method::template move<M, 5>(x, h, frame, frame.y);
+    for_each_body<M>(x, [&](auto const& at) {
+      Chart<Body> const centre = Body::centre(at(y));
+      at(error) = Body::local(at(y), at(frame.y));
+      add(at(error), R(-1.0), centre);
+    });
+  }
+};
+
+}  // namespace polhode
