@@ -14,10 +14,17 @@ template <class R>
 struct PrincipalInertia {
   Vec3<R> coupling;  ///< (J_y - J_z) / J_x, ... [1]
   Vec3<R> inverse;   ///< 1 / J [1/(kg m^2)]
+  Vec3<R> moments;   ///< J [kg m^2]
 
   explicit PrincipalInertia(Vec3<R> const& J, R const& sign = R(1.0))
       : coupling{sign * (J.y - J.z) / J.x, sign * (J.z - J.x) / J.y, sign * (J.x - J.y) / J.z},
-        inverse{R(1.0) / J.x, R(1.0) / J.y, R(1.0) / J.z} {}
+        inverse{R(1.0) / J.x, R(1.0) / J.y, R(1.0) / J.z},
+        moments(J) {}
+
+  Mat3<R> matrix() const {
+    R const none(0.0);
+    return {{moments.x, none, none}, {none, moments.y, none}, {none, none, moments.z}};
+  }
 
   template <class S>
   POLHODE_INLINE Vec3<S> acceleration(Vec3<S> const& w) const {
@@ -41,6 +48,7 @@ struct FullInertia {
     R const d = R(1.0) / dot(J.e1, a);
     inverse = {d * a, d * b, d * c};  // rows of the inverse; symmetric, so columns too
   }
+  Mat3<R> const& matrix() const { return J; }
   template <class S>
   Vec3<S> acceleration(Vec3<S> const& w) const {
     return acceleration(w, Vec3<S>{S(0.0), S(0.0), S(0.0)});
@@ -57,6 +65,15 @@ struct FullInertia {
             m.e1.z * v.x + m.e2.z * v.y + m.e3.z * v.z};
   }
 };
+
+/// A torque law depends on the body rate unless it says  static constexpr bool feels_rate = false.
+template <class C>
+inline constexpr bool feels_rate = true;
+template <class C>
+  requires requires {
+    C::feels_rate;
+  }
+inline constexpr bool feels_rate<C> = C::feels_rate;
 
 /// The field: attitude space A over scalar S, an inertia and a controller.
 /// state   attitude x omega [rad/s, body]
@@ -80,6 +97,18 @@ struct ControlledBody {
       return {x.second, inertia.acceleration(x.second, control.torque(t, A<S>::attitude(x.first), x.second))};
   }
   State initial() const { return start; }
+
+  /// What methods for rigid bodies ask: J [kg m^2, body]; the torque [N m, body], of sampled control the one that is
+  /// held; whether there is any, and whether it depends on the body rate.
+  Mat3<Real<S>> inertia_matrix() const { return inertia.matrix(); }
+  Vec3<S> torque(S const& t, State const& x) const {
+    if constexpr (Control::sampled)
+      return held;
+    else
+      return control.torque(t, A<S>::attitude(x.first), x.second);
+  }
+  static constexpr bool torque_free() { return std::same_as<Control, NoTorque<S>>; }
+  static constexpr bool torque_feels_rate() { return !torque_free() && !Control::sampled && feels_rate<Control>; }
 
   void sample(Real<S> const& t, State const& x) requires(Control::sampled) {
     held = control.torque(t, A<S>::attitude(x.first), x.second);
