@@ -6,7 +6,7 @@
 ///   J omega' = J omega x omega + r x R^T lambda
 ///
 /// that is M u' = f - G^T lambda with u = (omega, v) and G u = v - R (omega x r).
-/// Source: Bruels, Cardona & Arnold (2012), Mech. Mach. Theory 48, 121, sec. 6.1
+/// Source: Bruels, Cardona & Arnold (2012), Mech. Mach. Theory 48, 121
 ///
 /// state   (attitude, omega [rad/s, body]), (x [m], v [m/s], inertial)
 #include "problems/rigid_body.hpp"
@@ -119,6 +119,29 @@ class PinnedBody {
   Vec3<Real<S>> arm_, gravity_;
   Mat3<Real<S>> yielding_;  ///< -hat(r) J^-1 hat(r) [1/kg]: how the arm's end gives way to a force, by turning
 };
+
+/// Takes Phi out of attitude and position along M^-1 G^T, by Newton until it no longer falls; false if more than 1e-9
+/// of the position is left.
+template <Attitude A, class S = typename A::Scalar>
+bool put_on_constraint(PinnedBody<S> const& body, Point<A>& attitude, Vec3<S>& position) {
+  Mat3<S> R = rotation_of<A>(attitude);
+  Vec3<S> defect = body.constraint(R, position);
+  S size = largest<S>(defect);
+  for (int sweep = 0; sweep < 8 && S(0.0) < size; ++sweep) {
+    auto const change = body.impulse(R, body.impulse_against(R, R, defect));
+    Chart<A> u = A::centre(attitude);
+    add(u, A::rate(attitude, change.first));
+    Point<A> const next = A::retract(attitude, u);
+    R = rotation_of<A>(next);
+    defect = body.constraint(R, position + change.second);
+    S const now = largest<S>(defect);
+    if (!(now < size)) break;
+    size = now;
+    attitude = next;
+    add(position, change.second);
+  }
+  return size < S(1e-9) * largest<S>(position) + S(1e-12);
+}
 
 /// A problem with constraints that methods may look at.
 template <class P>
