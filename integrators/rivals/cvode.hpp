@@ -1,20 +1,18 @@
 #pragma once
 /// SUNDIALS CVODE behind our face, unmodified. Memory is made in bind and lives across advance calls; restart()
 /// re-initialises at the next call. double, flat coordinates; rtol, atol per component.
-/// Adams runs with fixed-point iteration, BDF with Newton and a dense difference-quotient Jacobian: CVODE's guide,
-/// ch. 4. Source: Hindmarsh et al. (2005), ACM TOMS 31, 363; SUNDIALS 6.4
-#include "integrators/rivals/library_field.hpp"
+/// Adams runs with fixed-point iteration, BDF with Newton and a dense Jacobian, the problem's own or difference
+/// quotients: CVODE's guide, ch. 4. Source: Hindmarsh et al. (2005), ACM TOMS 31, 363; SUNDIALS 6.4
+#include "integrators/rivals/jacobian.hpp"
+#include "integrators/rivals/sundials.hpp"
 
 #ifdef POLHODE_HAS_SUNDIALS
 #include <cvode/cvode.h>
 #include <cvode/cvode_proj.h>
-#include <nvector/nvector_serial.h>
 #include <sunlinsol/sunlinsol_dense.h>
 #include <sunmatrix/sunmatrix_dense.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
-#include <memory>
-#include <new>
 #include <span>
 #include <vector>
 #endif
@@ -22,8 +20,6 @@
 namespace polhode {
 
 #ifdef POLHODE_HAS_SUNDIALS
-inline constexpr std::string_view sundials_not_built = "";
-
 /// Everything that does not know the problem: CVODE's objects and their lifetimes.
 class CvodeMemory {
  public:
@@ -61,6 +57,10 @@ class CvodeMemory {
   /// CVODE's own projection, for BDF: called after every step. Throws std::bad_alloc.
   void project_with(CVProjFn project) {
     if (CVodeSetProjFn(memory_.get(), project) != CV_SUCCESS) throw std::bad_alloc();
+  }
+  /// The Jacobian of Newton's iteration, for BDF. Throws std::bad_alloc.
+  void differentiate_with(CVLsJacFn jacobian) {
+    if (CVodeSetJacFn(memory_.get(), jacobian) != CV_SUCCESS) throw std::bad_alloc();
   }
   double* state() { return N_VGetArrayPointer(y_.get()); }
   void restart() { fresh_ = true; }
@@ -116,28 +116,12 @@ class CvodeMemory {
     if (linear_) sum.jacobians = sum.jacobians.value_or(0) + jacobians;
   }
 
-  struct Free {
-    void operator()(SUNContext context) const { SUNContext_Free(&context); }
-    void operator()(N_Vector v) const { N_VDestroy(v); }
-    void operator()(SUNMatrix m) const { SUNMatDestroy(m); }
-    void operator()(SUNLinearSolver s) const { SUNLinSolFree(s); }
-    void operator()(SUNNonlinearSolver s) const { SUNNonlinSolFree(s); }
-    void operator()(void* memory) const { CVodeFree(&memory); }
-  };
-  template <class Pointer>
-  using Owned = std::unique_ptr<std::remove_pointer_t<Pointer>, Free>;
-  static SUNContext make_context() {
-    SUNContext context = nullptr;
-    if (SUNContext_Create(nullptr, &context) != 0) throw std::bad_alloc();
-    return context;
-  }
-
-  Owned<SUNContext> context_{make_context()};  // outlives all that is made in it
-  Owned<N_Vector> y_;
-  Owned<SUNMatrix> matrix_;
-  Owned<SUNLinearSolver> linear_;
-  Owned<SUNNonlinearSolver> fixed_point_;
-  std::unique_ptr<void, Free> memory_;
+  SundialsOwned<SUNContext> context_ = make_sundials_context();  // outlives all that is made in it
+  SundialsOwned<N_Vector> y_;
+  SundialsOwned<SUNMatrix> matrix_;
+  SundialsOwned<SUNLinearSolver> linear_;
+  SundialsOwned<SUNNonlinearSolver> fixed_point_;
+  SundialsMemory<CVodeFree> memory_;
   bool fresh_ = true;
   std::vector<int> found_, roots_;  ///< CVODE's flags; the functions that are zero now
   Work before_;
@@ -152,6 +136,8 @@ class CvodeStepper {
       : user_(new User{LibraryField<P>(problem), {}}),
         memory_(multistep, control, field, user_.get(), user_->field.size()) {
     if (policy == NormPolicy::native) memory_.project_with(project);
+    if constexpr (DifferentiableProblem<P>)
+      if (multistep == CV_BDF && problem.has_jacobian()) memory_.differentiate_with(jacobian);
   }
 
   /// x is read at a restart; between restarts CVODE's own state and history go on.
@@ -184,6 +170,11 @@ class CvodeStepper {
     static_cast<User const*>(user)->field(t, N_VGetArrayPointer(y), N_VGetArrayPointer(dydt));
     return 0;
   }
+  static int jacobian(double t, N_Vector y, N_Vector, SUNMatrix matrix, void* user, N_Vector, N_Vector,
+                      N_Vector) requires DifferentiableProblem<P> {
+    write_jacobian(static_cast<User const*>(user)->field, t, N_VGetArrayPointer(y), SUNDenseMatrix_Data(matrix));
+    return 0;
+  }
   static int switching_functions(double t, N_Vector y, double* values, void* user) requires SwitchingProblem<P> {
     static_cast<User const*>(user)->field.event_values(t, N_VGetArrayPointer(y), values);
     return 0;
@@ -204,8 +195,6 @@ class CvodeStepper {
   std::unique_ptr<User> user_;
   CvodeMemory memory_;
 };
-#else
-inline constexpr std::string_view sundials_not_built = "not built: configure with POLHODE_SUNDIALS=ON";
 #endif
 
 /// The two multistep families differ in one number.
@@ -221,6 +210,7 @@ struct Cvode {
       .no_projection = "projection would break the multistep history that the next step extrapolates",
       .projects_natively = stiff,  // CVodeSetProjFn knows BDF alone
       .not_built = sundials_not_built};
+  static constexpr bool uses_jacobian = stiff;
 #ifdef POLHODE_HAS_SUNDIALS
   template <Problem P>
     requires FlatSpace<typename P::Space> && std::same_as<typename P::Space::Scalar, double>
