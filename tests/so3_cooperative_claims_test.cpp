@@ -36,12 +36,13 @@ struct Known {
 std::vector<Known> const known_times{{{}, {}, 5.891, 4.89},
                                      {{}, {{"rho", {0}}}, 9.531, 4.89},
                                      {{}, rough, 5.596, 4.89},
+                                     // 5.54954; 5.5493 .. 5.5496 by steps that run over the switch
                                      {{"switching"}, rough, 5.549, 4.89}};
 
 TEST(So3Times, AreOursByTwoMethodsAndNotThePublished) {
   for (Known const& known : known_times)
     for (Claims const& all : {claims<S3>(known.words, known.set, Gauss<2>{}, 0.01),
-                              claims<FlatQuaternion>(known.words, known.set, Rk4{}, 0.005)}) {
+                              claims<FlatQuaternion>(known.words, known.set, Rk4{}, 0.01)}) {
       ClaimResult const &t1 = all.at("t1"), &ours = all.at("t1_ours");
       EXPECT_NEAR(*t1.value, known.t1, 5.5e-4) << known.t1;
       EXPECT_EQ(*t1.published, known.published);
@@ -54,9 +55,9 @@ TEST(So3Times, AreOursByTwoMethodsAndNotThePublished) {
 /// The published order is one of gains: `set_p` shows it, equal linearisations do not.
 TEST(So3Times, OrderOfTheMethodsIsAMatterOfGains) {
   auto const t1 = [](std::string const& method, std::string const& gains) {
-    Claims const coarse = claims<S3>({method, gains}, rough, CommutatorFree4{}, 0.01);
-    Claims const fine = claims<FlatQuaternion>({method, gains}, rough, Rk4{}, 0.005);
-    EXPECT_NEAR(*coarse.at("t1").value, *fine.at("t1").value, 2e-5) << method;
+    Claims const coarse = claims<S3>({method, gains}, rough, CommutatorFree4{}, 0.02);
+    Claims const fine = claims<FlatQuaternion>({method, gains}, rough, Rk4{}, 0.01);
+    EXPECT_NEAR(*coarse.at("t1").value, *fine.at("t1").value, 1e-4) << method;
     EXPECT_EQ(coarse.at("t1").holds, false);
     if (coarse.contains("t1_ours")) {
       EXPECT_EQ(coarse.at("t1_ours").holds, true) << method;
@@ -159,8 +160,9 @@ TEST(So3LargeAngles, ColumnsAtTheStartAreTheGivenAngles) {
 TEST(So3Claims, EveryClaimIsAnnounced) {
   std::set<std::string> announced, evaluated;
   for (ClaimInfo const& claim : So3Cooperative::info().claims) announced.insert(claim.name);
-  for (Words const& words : {Words{}, Words{"ex2"}})
-    for (auto const& [name, claim] : claims<S3>(words, {}, CommutatorFree4{}, 0.005)) evaluated.insert(name);
+  for (Claims const& some :
+       {claims<S3>({}, {}, CommutatorFree4{}, 0.05), claims<S3>({"ex2"}, {}, CommutatorFree4{}, 0.005, 0.7)})
+    for (auto const& [name, claim] : some) evaluated.insert(name);
   EXPECT_EQ(evaluated, announced);
 }
 
