@@ -14,7 +14,7 @@ namespace polhode::bench {
 struct Sight {
   double t = 0;  ///< [s]
   std::span<BodySight const> bodies;
-  double raw_defect = 0;  ///< the greatest defect of a step before projection, so far
+  double raw_defect = 0;                   ///< the greatest defect of a step before projection, so far
   std::optional<Vec3<Quad>> multiplier{};  ///< that the method carries
 };
 
@@ -55,7 +55,7 @@ class Metrics {
   double errors_of(Sight const& sight);
 
   UsableReference const* reference_;
-  std::optional<Mat3<Quad>> inertia_;      ///< of a free body: its energy and angular momentum are invariants
+  std::optional<Mat3<Quad>> inertia_;       ///< of a free body: its energy and angular momentum are invariants
   std::optional<PinnedBody<Quad>> pinned_;  ///< a constrained body
   double t_end_;
   std::optional<Invariants> start_;

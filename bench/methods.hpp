@@ -21,8 +21,8 @@ Types<RigidBodies<typename F::template On<double>>...> bodies(Types<F...>);
 template <class... F>
 Types<Euclidean3<double>, MovingBody<typename F::template On<double>>...> positions(Types<F...>);
 }  // namespace detail
-/// The spaces that runs live on: one rigid body, many attitudes, many rigid bodies, in their formulations; three numbers
-/// alone, and a body that moves in space.
+/// The spaces that runs live on: one rigid body, many attitudes, many rigid bodies, in their formulations; three
+/// numbers alone, and a body that moves in space.
 using OneBodySpaces = decltype(detail::one_body(Formulations{}));
 using AttitudesSpaces = decltype(detail::attitudes(AttitudesFormulations{}));
 using BodiesSpaces = decltype(detail::bodies(BodiesFormulations{}));

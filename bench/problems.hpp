@@ -23,8 +23,7 @@ struct ErasedOn<Types<M...>> {
 };
 /// One body, many attitudes, many bodies, three numbers, a body that moves in space.
 template <class A>
-using Kinds =
-    Types<RigidBody<A>, Attitudes<A>, RigidBodies<A>, Euclidean3<typename A::Scalar>, MovingBody<A>>;
+using Kinds = Types<RigidBody<A>, Attitudes<A>, RigidBodies<A>, Euclidean3<typename A::Scalar>, MovingBody<A>>;
 }  // namespace detail
 /// A problem on one of the spaces that runs live on, owned.
 using ProblemInFormulation =

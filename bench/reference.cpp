@@ -238,7 +238,8 @@ Certificate certify(results::Cell const& cell, ChosenProblem const& problem, Sch
   int divisions = int(std::ceil((stops[1].time - stops[0].time) / h - 1e-9));
   std::vector<QuadState> coarse = try_gauss(problem, watched, divisions),
                          fine = try_gauss(problem, watched, 2 * divisions);
-  for (int halvings = 0; halvings < most_halvings && !(greatest_distance(coarse, fine, layout) < good_enough); ++halvings) {
+  for (int halvings = 0; halvings < most_halvings && !(greatest_distance(coarse, fine, layout) < good_enough);
+       ++halvings) {
     divisions *= 2;
     coarse = std::move(fine);
     fine = try_gauss(problem, watched, 2 * divisions);
@@ -272,7 +273,8 @@ void check_fresh(Certificate const& certificate, Reference const& reference, std
   // Round-off of two builds differs: a hundred units in the last place of quadruple precision are no disagreement.
   double const room = std::max(10 * certificate.bar, 1e-30);
   for (std::size_t k = 0; k < certificate.times.size(); ++k) {
-    double const apart = distance_between(certificate.states[k], reference.at(certificate.times[k]), certificate.layout);
+    double const apart =
+        distance_between(certificate.states[k], reference.at(certificate.times[k]), certificate.layout);
     if (apart <= room) continue;
     throw ReferenceError(
         fmt::format("{}: stale: at t = {} s it is {:.1e} rad from the solution of today's problem; make "

@@ -43,8 +43,8 @@ class Reference {
   std::vector<double> event_times_;
 };
 
-/// How far two states are apart: the greatest angle between the attitudes of the same body [rad]; without attitudes, the
-/// greatest distance of the rates.
+/// How far two states are apart: the greatest angle between the attitudes of the same body [rad]; without attitudes,
+/// the greatest distance of the rates.
 double distance_between(QuadState const& a, QuadState const& b, Layout const& layout);
 
 /// States of the same problem at its stops, by 8-stage Gauss on S3 with `divisions` steps from stop to stop.

@@ -94,7 +94,7 @@ inline Mat3<Quad> widened(Mat3<double> const& m) {
 
 /// One body of a run, and how far it is from the constraint of its attitude.
 struct BodySight : QuadBody {
-  double drift = 0;      ///< for quaternions signed, q.q - 1
+  double drift = 0;       ///< for quaternions signed, q.q - 1
   Mat3<Quad> rotation{};  ///< of a body that moves in space: the matrix of its attitude as the problem sees it
 };
 template <SmallSpace M>

@@ -1,0 +1,11 @@
+#include "tests/orders.hpp"
+
+namespace polhode {
+namespace {
+
+TEST(Order, OfTheExplicitMethods) {
+  EXPECT_GE(test::expect_orders(ExplicitMethods{}), 8);
+}
+
+}  // namespace
+}  // namespace polhode

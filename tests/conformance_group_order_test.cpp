@@ -1,0 +1,11 @@
+#include "tests/orders.hpp"
+
+namespace polhode {
+namespace {
+
+TEST(Order, OfTheGroupMethods) {
+  EXPECT_GE(test::expect_orders(GroupMethods{}), 6);
+}
+
+}  // namespace
+}  // namespace polhode

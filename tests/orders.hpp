@@ -1,0 +1,129 @@
+#pragma once
+/// Orders of own methods, measured in quadruple precision against certified references. Walks the catalogue's lists: a
+/// new method is tested by being listed. One test file a list, so that no unit is slow.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "integrators/catalog.hpp"
+#include "problems/heavy_top.hpp"
+#include "problems/pd_slew.hpp"
+#include "problems/tether_capture.hpp"
+#include "tests/runs.hpp"
+
+namespace polhode::test {
+
+/// A run of an order plot.
+struct OrderPoint {
+  double log_h, log_error;
+};
+
+/// Least squares.
+inline double slope_of(std::vector<OrderPoint> const& points) {
+  double const n = double(points.size());
+  double h = 0, e = 0, hh = 0, he = 0;
+  for (OrderPoint const& p : points) {
+    h += p.log_h / n;
+    e += p.log_error / n;
+  }
+  for (OrderPoint const& p : points) {
+    hh += (p.log_h - h) * (p.log_h - h);
+    he += (p.log_h - h) * (p.log_error - e);
+  }
+  return he / hh;
+}
+
+/// An order problem: non-principal rates, a torque that depends on the attitude, steps that divide exactly.
+struct OrderProblem {
+  CellUnderTest cell;
+  bench::PreparedCell prepared;
+  bench::QuadState end;
+
+  explicit OrderProblem(CellUnderTest const& c, double t_end = 4)  // [s]
+      : cell(c.until(t_end)),
+        prepared(bench::prepare(cell.with_h(t_end / 8).cell)),
+        end(bench::Reference::solve(*prepared.problem, prepared.schedule).at(t_end)) {}
+};
+inline OrderProblem const& slew() {
+  static OrderProblem const problem(a_cell("pd_slew", "s3", "cf4"));
+  return problem;
+}
+/// Sampled every 2 s, so that there is room for steps.
+inline OrderProblem const& tether() {
+  static OrderProblem const problem(
+      a_cell("tether_capture", "s3", "cf4").of_variant("case1").set("sample_period", {2}));
+  return problem;
+}
+
+/// The finest of five steps, as a power of two [s]: where a method of this order is asymptotic, and its error in
+/// quadruple precision is far above round-off.
+inline int finest_exponent(int order) {
+  return order == 1 ? -11 : order <= 5 ? -9 : order == 6 ? -6 : order <= 8 ? -5 : -4;
+}
+
+/// The attitude of the one body of a state.
+template <class A, class X>
+Quat<Quad> attitude_of(X const& x) {
+  if constexpr (requires { x.first.first; })
+    return A::attitude(x.first.first);
+  else
+    return A::attitude(x.first);
+}
+
+/// The order of Method on the field of `definition`, from five halvings of the step.
+template <class Method, template <class> class A, Definition D>
+void expect_order(D const& definition, OrderProblem const& problem, std::string_view formulation, int finest) {
+  auto const& info = Method::info;
+  std::vector<OrderPoint> points;
+  with_field<Quad, A>(definition, [&](auto typed) {
+    using M = typename decltype(typed)::Space;
+    auto const field = erase_type(std::move(typed));
+    if constexpr (RunsFixed<Method, Erased<M>>)
+      for (int k = finest + 4; k >= finest; --k) {
+        double const h = std::ldexp(1, k);
+        auto stepper = Method{}.bind(*field, FixedStep{h}, NormPolicy::none);
+        auto x = field->initial();
+        ASSERT_EQ(bench::RunLoop(*field, stepper, h, true).go(x, problem.prepared.plan.stops, bench::NoWatch{}),
+                  Status::ok)
+            << info.name << " as " << formulation << ", h = " << h;
+        double const error = double(angle_between(attitude_of<A<Quad>>(x), problem.end.at(0).q));
+        ASSERT_GT(error, 1e-28) << info.name << " as " << formulation << ": round-off, no order to see";
+        points.push_back({std::log(h), std::log(error)});
+      }
+  });
+  ASSERT_EQ(points.size(), 5u) << info.name << " does not run as " << formulation;
+  EXPECT_NEAR(slope_of(points), info.order, 0.1)
+      << info.name << " on " << problem.cell.cell.problem << " as " << formulation;
+}
+
+/// Calls f(method, formulation) for each method with an order and each formulation of one body that it suits.
+template <class F, class... Method>
+void for_each_order(F f, Types<Method...>) {
+  auto const on_formulation = [&]<class Formulation>(Formulation formulation) {
+    auto const one = [&]<class M>(M method) {
+      using Space = RigidBody<typename Formulation::template On<Quad>>;
+      if constexpr (refusal<Space>(M::info.needs).empty() && M::info.order > 0) f(method, formulation);
+    };
+    (one(Method{}), ...);
+  };
+  [&]<class... Formulation>(Types<Formulation...>) { (on_formulation(Formulation{}), ...); }(Formulations{});
+}
+
+/// The orders of a list on the slew and on the tether; how many were measured.
+template <class List>
+int expect_orders(List list) {
+  Choice choice;
+  choice.set["sample_period"] = {2};
+  int checked = 0;
+  for_each_order(
+      [&]<class Method, class F>(Method, F) {
+        int const finest = finest_exponent(Method::info.order);
+        expect_order<Method, F::template On>(PdSlew(Choice{}), slew(), F::name, finest);
+        expect_order<Method, F::template On>(TetherCapture(choice), tether(), F::name, finest);
+        ++checked;
+      },
+      list);
+  return checked;
+}
+
+}  // namespace polhode::test
