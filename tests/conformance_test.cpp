@@ -265,7 +265,8 @@ TEST(References, AreCertifiedToTwentyEightDigits) {
           a_cell(problem.name, problem.formulations.front(), "gauss2").of_variant(variant).with_h(problem.step);
       // Its whole horizon if it is that of one body and the default; short ones tell of the others, networks' are dear.
       bool const whole = variant.empty() && bench::problem_named(problem.name).choose({})->body();
-      auto const record = (whole ? cell : cell.until(std::min(5.0, 40 * problem.step))).measured().record;
+      auto const record =
+          (whole ? cell : cell.until(std::min(5.0, std::max(1.0, 40 * problem.step)))).measured().record;
       if (!bench::prepare(cell.cell).problem->no_reference().empty()) {
         EXPECT_FALSE(record.reference_bar) << problem.name << " " << variant;
         continue;
