@@ -96,16 +96,16 @@ Vec3<S> modified_moments(Vec3<R> const& I, Vec3<S> const& L, R const& h, std::sp
 /// c = e / e_0 of a step: Newton for  J c + c x J c = (1 + |c|^2) v,  v = (h/2) L. Counts its sweeps; false if they do
 /// not converge: the step is too long.
 template <class S>
-POLHODE_INLINE bool moser_veselov_turn(Vec3<S> const& J, Vec3<S> const& v, Vec3<S>& c, std::int64_t& sweeps) {
+bool moser_veselov_turn(Vec3<S> const& J, Vec3<S> const& v, Vec3<S>& c, std::int64_t& sweeps) {
   using R = Real<S>;
-  auto const times_J = [&J](Vec3<S> const& a) POLHODE_LAMBDA { return Vec3<S>{J.x * a.x, J.y * a.y, J.z * a.z}; };
+  auto const times_J = [&J](Vec3<S> const& a) { return Vec3<S>{J.x * a.x, J.y * a.y, J.z * a.z}; };
   S const enough(std::same_as<R, double> ? 1e-9 : 1e-18);  // convergence is quadratic
   S const one(1.0), none(0.0);
   c = {v.x / J.x, v.y / J.y, v.z / J.z};
   for (int sweep = 0; sweep < 25; ++sweep) {
     Vec3<S> const Jc = times_J(c);
     Vec3<S> const residual = (one + dot(c, c)) * v - Jc - cross(c, Jc);
-    auto const column = [&](Vec3<S> const& d) POLHODE_LAMBDA {
+    auto const column = [&](Vec3<S> const& d) {
       Vec3<S> const Jd = times_J(d);
       return Jd + cross(d, Jc) + cross(c, Jd) - (R(2.0) * dot(c, d)) * v;
     };
@@ -155,7 +155,7 @@ struct MoserVeselov {
     struct Frame {};
 
     template <Problem P, class M = typename P::Space, class S = typename M::Scalar>
-    POLHODE_INLINE void step(P const&, S const&, R const& h, Point<M>& x, Frame<M>&, Memory<M>& memory) const {
+    void step(P const&, S const&, R const& h, Point<M>& x, Frame<M>&, Memory<M>& memory) const {
       bool const opened = memory.open(body, x);
       if (opened || memory.h != h) [[unlikely]] {
         memory.h = h;

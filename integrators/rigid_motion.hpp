@@ -111,14 +111,14 @@ struct Turn {
   S less;     ///< cos(angle / 2) - 1
 
   /// By the rotation vector u [rad].
-  static POLHODE_INLINE Turn by(Vec3<S> const& u) {
+  static Turn by(Vec3<S> const& u) {
     Vec3<S> const h = Real<S>(0.5) * u;
     auto const [sinc, cosine] = sinc_cos<S>(dot(h, h));
     Vec3<S> const e = sinc * h;
     return {e, -(dot(e, e) / (S(1.0) + cosine))};
   }
   /// Whose e is tan(angle / 2) times the axis.
-  static POLHODE_INLINE Turn by_tangent(Vec3<S> const& c) {
+  static Turn by_tangent(Vec3<S> const& c) {
     S const square = dot(c, c), norm = sqrt(S(1.0) + square), over = S(1.0) / norm;
     return {over * c, -(square * over / (S(1.0) + norm))};
   }
@@ -133,12 +133,12 @@ struct Turn {
 
 /// q <- q (turn), lost being what rounding took.
 template <class S>
-POLHODE_INLINE void turn_by(Quat<S>& q, Quat<S>& lost, Turn<S> const& turn) {
+void turn_by(Quat<S>& q, Quat<S>& lost, Turn<S> const& turn) {
   Quat<S> const change = q * Quat<S>{turn.e.x, turn.e.y, turn.e.z, turn.less};
   FlatQuaternion<S>::retract_exactly(q, change, lost, lost);
 }
 template <class S>
-POLHODE_INLINE void turn_by(Mat3<S>& m, Mat3<S>& lost, Turn<S> const& turn) {
+void turn_by(Mat3<S>& m, Mat3<S>& lost, Turn<S> const& turn) {
   Real<S> const two(2.0);
   auto const& [x, y, z] = turn.e;
   S const w = S(1.0) + turn.less, x2 = two * x, y2 = two * y, z2 = two * z;
@@ -163,7 +163,7 @@ struct Motion {
   void fit(Point<M> const&) {}
 
   /// Takes the momentum from the state, after a restart. Returns whether it did.
-  POLHODE_INLINE bool open(PrincipalAxes<R> const& body, Point<M> const& x) {
+  bool open(PrincipalAxes<R> const& body, Point<M> const& x) {
     if (known) [[likely]]
       return false;
     momentum = body.momentum(body.to_principal(x.second));
@@ -173,20 +173,18 @@ struct Motion {
     return true;
   }
   /// Turns the body; the turn is in principal axes.
-  POLHODE_INLINE void turn(PrincipalAxes<R> const& body, Point<M>& x, Turn<S> const& turn) {
+  void turn(PrincipalAxes<R> const& body, Point<M>& x, Turn<S> const& turn) {
     Vec3<S> const& L = momentum;
     Vec3<S> const back = cross(turn.e, L) - (S(1.0) + turn.less) * L;
     accelerate(R(2.0) * cross(turn.e, back));
     turn_by(x.first, attitude_lost, Turn<S>{body.to_body(turn.e), turn.less});
   }
   /// Adds to the momentum [N m s, principal axes].
-  POLHODE_INLINE void accelerate(Vec3<S> const& change) {
+  void accelerate(Vec3<S> const& change) {
     Euclidean3<S>::retract_exactly(momentum, change, momentum_lost, momentum_lost);
   }
   /// The body rate of the momentum, into the state.
-  POLHODE_INLINE void close(PrincipalAxes<R> const& body, Point<M>& x) const {
-    x.second = body.to_body(body.rate(momentum));
-  }
+  void close(PrincipalAxes<R> const& body, Point<M>& x) const { x.second = body.to_body(body.rate(momentum)); }
 };
 
 }  // namespace polhode
