@@ -7,6 +7,21 @@
 
 namespace polhode {
 
+/// The slopes of `count` stages, and the room to make them.
+template <Space M, int count>
+struct Slopes {
+  std::array<Chart<M>, std::size_t(count)> k;
+  Chart<M> u;
+  Point<M> y;
+  Velocity<M> v;
+  void fit(Point<M> const& x) {
+    for (Chart<M>& slope : k) slope = shaped_like<Chart<M>>(x);
+    u = shaped_like<Chart<M>>(x);
+    y = x;
+    v = shaped_like<Velocity<M>>(x);
+  }
+};
+
 /// A tableau known at compile time: zeros vanish, loops unroll.
 template <class T>
 struct Explicit {
@@ -16,18 +31,7 @@ struct Explicit {
   }
 
   template <Space M>
-  struct Frame {
-    std::array<Chart<M>, T::stages> k;
-    Chart<M> u;
-    Point<M> y;
-    Velocity<M> v;
-    void fit(Point<M> const& x) {
-      for (Chart<M>& slope : k) slope = shaped_like<Chart<M>>(x);
-      u = shaped_like<Chart<M>>(x);
-      y = x;
-      v = shaped_like<Velocity<M>>(x);
-    }
-  };
+  using Frame = Slopes<M, T::stages>;
   template <Space M>
   using Memory = NoMemory;
 
@@ -39,26 +43,30 @@ struct Explicit {
 
   /// The rest of a step from x once k[0] is known; the new point goes to y, which may be x.
   template <Problem P, class M = typename P::Space, class S = typename M::Scalar, class R = Real<S>>
-  static POLHODE_INLINE void finish(P const& p, S const& t, R const& h, Point<M> const& x, Frame<M>& frame,
-                                    Point<M>& y) {
+  static POLHODE_INLINE void finish(P const& p, S const& t, R const& h, Point<M> const& x, auto& frame, Point<M>& y) {
     auto& k = frame.k;
     // One body: the sum with b grows as the stages arrive, or g++ would spill them all.
     [[maybe_unused]] Chart<M> next;
     auto const accumulate = [&](auto j) POLHODE_LAMBDA {
-      if constexpr (SmallSpace<M> && T::b[j].over != 0) add(next, R(T::b[j].template as<R>() * h), k[j]);
+      if constexpr (SmallSpace<M> && !T::b[j].is_zero()) add(next, R(T::b[j].template as<R>() * h), k[j]);
     };
     if constexpr (SmallSpace<M>) next = M::centre(x);
     accumulate(std::integral_constant<int, 0>{});
     unroll<T::stages - 1>([&](auto m) POLHODE_LAMBDA {
       constexpr int i = m + 1;
-      displace<M>(x, stage_sum<i>(k, h), frame.u, frame.y);
-      chart_slope(p, S(t + T::c[i].template as<R>() * h), x, frame.u, frame.y, frame.v, k[i]);
+      stage<i>(p, t, h, x, frame);
       accumulate(std::integral_constant<int, i>{});
     });
     if constexpr (SmallSpace<M>)
       y = M::retract(x, next);
     else
       displace<M>(x, step_sum(k, h), frame.u, y);
+  }
+  /// k[i] from those before it.
+  template <int i, Problem P, class M = typename P::Space, class S = typename M::Scalar, class R = Real<S>>
+  static POLHODE_INLINE void stage(P const& p, S const& t, R const& h, Point<M> const& x, auto& frame) {
+    displace<M>(x, stage_sum<i>(frame.k, h), frame.u, frame.y);
+    chart_slope(p, S(t + T::c[i].template as<R>() * h), x, frame.u, frame.y, frame.v, frame.k[i]);
   }
 
  private:
@@ -67,7 +75,7 @@ struct Explicit {
   static POLHODE_INLINE auto stage_sum(auto const& k, R const& h) {
     return [&k, &h](auto& u, auto const& at) POLHODE_LAMBDA {
       unroll<i>([&](auto j) POLHODE_LAMBDA {
-        if constexpr (T::a[i][j].over != 0) add(u, R(T::a[i][j].template as<R>() * h), at(k[j]));
+        if constexpr (!T::a[i][j].is_zero()) add(u, R(T::a[i][j].template as<R>() * h), at(k[j]));
       });
     };
   }
@@ -75,37 +83,145 @@ struct Explicit {
   static POLHODE_INLINE auto step_sum(auto const& k, R const& h) {
     return [&k, &h](auto& u, auto const& at) POLHODE_LAMBDA {
       unroll<T::stages>([&](auto j) POLHODE_LAMBDA {
-        if constexpr (T::b[j].over != 0) add(u, R(T::b[j].template as<R>() * h), at(k[j]));
+        if constexpr (!T::b[j].is_zero()) add(u, R(T::b[j].template as<R>() * h), at(k[j]));
       });
     };
   }
 };
 
-/// An embedded pair on a flat space, its first stage being the last of the step before; step control in
-/// step_control.hpp.
-template <class T>
+/// An embedded pair on a flat space; step control in step_control.hpp.
+/// Continuous extension, where the tableau has one, from x to y with end slopes k_1 and k_e, s in [0, 1]:
+///   s^2 (3 - 2s) y + (1 - s)^2 (1 + 2s) x + h s (1 - s)^2 k_1 - h s^2 (1 - s) k_e + h s^2 (1 - s)^2 sum_i q_i(s) k_i
+///   q(s) = d0 + s (d1 + (1 - s) (d2 + s d3)),  d a row of `dense`: by stage of the pair, then k_e, then stages for
+///   the extension alone (`dense_a`, `dense_c`)
+/// Source: Hairer, Norsett & Wanner, Solving ODEs I, II.6 (Hermite's cubic and a bubble)
+template <class T, StepRule control_rule = StepRule{.memory = 0.2 / T::order}>
 struct EmbeddedPair {
   template <Problem P>
     requires FlatSpace<typename P::Space>
   auto bind(P const& p, Adaptive control, NormPolicy policy) const {
     return Controlled<EmbeddedPair, P>(*this, p, control, policy);
   }
-  static constexpr int order = T::order, error_order = T::error_order;
+  /// The same with interpolate().
+  template <Problem P>
+    requires FlatSpace<typename P::Space> &&
+        (requires { T::dense; }) auto bind_dense(P const& p, Adaptive control, NormPolicy policy) const {
+      return Controlled<EmbeddedPair, P, true>(*this, p, control, policy);
+    }
+    static constexpr int order = T::order, error_order = T::error_order;
+    static constexpr StepRule rule = control_rule;
+    static constexpr bool first_same_as_last = T::first_same_as_last;
+    /// The error is estimated twice: estimate_third().
+    static constexpr bool two_estimates = requires {
+      T::third;
+    };
+    /// There is a continuous extension.
+    static constexpr bool dense = requires {
+      T::dense;
+    };
 
-  template <Space M>
-  using Frame = typename Explicit<T>::template Frame<M>;
+    template <Space M>
+    using Frame = Slopes<M, T::pair_stages>;
 
-  /// One trial step from x, whose slope is frame.k[0]; writes the new point, its slope and the error estimate.
-  template <Problem P, class M = typename P::Space, class S = typename M::Scalar, class R = Real<S>>
-  POLHODE_INLINE void attempt(P const& p, R const& t, R const& h, Point<M> const& x, Frame<M>& frame, Point<M>& y,
-                              Chart<M>& last, Chart<M>& error) const {
-    Explicit<T>::finish(p, S(t), h, x, frame, y);
-    slope(p, S(t + h), y, frame.v, last);
-    assign_scaled(error, R(T::e[T::stages].template as<R>() * h), last);
-    unroll<T::stages>([&](auto j) POLHODE_LAMBDA {
-      if constexpr (T::e[j].over != 0) add(error, R(T::e[j].template as<R>() * h), frame.k[j]);
-    });
-  }
+    /// One trial step from x, whose slope is frame.k[0]; writes the new point and the error estimate, and the new slope
+    /// to `last` if first_same_as_last.
+    template <Problem P, class M = typename P::Space, class S = typename M::Scalar, class R = Real<S>>
+    POLHODE_INLINE void attempt(P const& p, R const& t, R const& h, Point<M> const& x, Frame<M>& frame, Point<M>& y,
+                                [[maybe_unused]] Chart<M>& last, Chart<M>& error) const {
+      Explicit<T>::finish(p, S(t), h, x, frame, y);
+      if constexpr (first_same_as_last) {
+        slope(p, S(t + h), y, frame.v, last);
+        assign_scaled(error, R(T::e[T::stages].template as<R>() * h), last);
+        add_row<T::e, 0, T::stages>(error, h, frame.k);
+      } else {
+        unroll<T::pair_stages - T::stages>([&](auto m) POLHODE_LAMBDA {
+          constexpr int i = T::stages + m;
+          Explicit<T>::template stage<i>(p, S(t), h, x, frame);
+        });
+        assign_scaled(error, R(T::e[0].template as<R>() * h), frame.k[0]);
+        add_row<T::e, 1, T::pair_stages>(error, h, frame.k);
+      }
+    }
+    /// The estimate of order 3 beside that of order 5.   Hairer, Norsett & Wanner I, II.5, eq. (5.29)
+    template <Space M, class R>
+    POLHODE_INLINE void estimate_third(R const& h, Frame<M> const& frame, Chart<M>& error) const
+        requires(two_estimates) {
+      assign_scaled(error, R(T::third[0].template as<R>() * h), frame.k[0]);
+      add_row<T::third, 1, T::pair_stages>(error, h, frame.k);
+    }
+
+    /// How many slopes the extension is made of.
+    static constexpr int slopes_inside = [] {
+      if constexpr (dense)
+        return int(std::size(T::dense));
+      else
+        return 0;
+    }();
+
+    /// What is kept of a step to look inside it: its ends and slopes; `complete` makes those for the extension alone.
+    template <Space M>
+    struct Inside {
+      Point<M> x, y;
+      Slopes<M, slopes_inside> made;
+      void fit(Point<M> const& model) {
+        x = y = model;
+        made.fit(model);
+      }
+    };
+    template <Problem P, class M = typename P::Space, class S = typename M::Scalar, class R = Real<S>>
+    void complete(P const& p, R const& t, R const& t_end, Inside<M>& step) const requires(dense) {
+      R const h = t_end - t;
+      auto& made = step.made;
+      if constexpr (!first_same_as_last) slope(p, S(t_end), step.y, made.v, made.k[T::pair_stages]);
+      if constexpr (requires { T::dense_a; })
+        unroll<slopes_inside - T::pair_stages - 1>([&](auto row) {
+          constexpr int i = T::pair_stages + 1 + row;
+          auto const sum = [&](auto& u, auto const& at) {
+            unroll<i>([&](auto j) {
+              if constexpr (!T::dense_a[row][j].is_zero())
+                add(u, R(T::dense_a[row][j].template as<R>() * h), at(made.k[j]));
+            });
+          };
+          displace<M>(step.x, sum, made.u, made.y);
+          chart_slope(p, S(t + T::dense_c[row].template as<R>() * h), step.x, made.u, made.y, made.v, made.k[i]);
+        });
+    }
+    /// The slope at the end of a complete step.
+    template <Space M>
+    Chart<M> const& last_slope(Inside<M> const& step) const requires(dense) {
+      return step.made.k[T::pair_stages];
+    }
+    /// The point at the part s of a complete step of h [s].
+    template <Space M, class R>
+    void interpolate(R const& s, R const& h, Inside<M> const& step, Point<M>& point) const requires(dense) {
+      R const one(1.0), two(2.0), rest = one - s, bubble = h * s * s * rest * rest;
+      R const to_end = s * s * (one + two * rest), to_start = rest * rest * (one + two * s);
+      assign_scaled(point, to_start, step.x);
+      add(point, to_end, step.y);
+      add(point, R(h * s * rest * rest), step.made.k[0]);
+      add(point, R(-(h * s * s * rest)), step.made.k[T::pair_stages]);
+      unroll<slopes_inside>([&](auto i) {
+        constexpr auto const& row = T::dense[i];
+        if constexpr (!row[0].is_zero()) add(point, R(bubble * weight_inside(row, s)), step.made.k[i]);
+      });
+    }
+
+   private:
+    /// sum += h times the entries from first to last of a row, but for its zeros.
+    template <auto const& row, int first, int last, class R>
+    static POLHODE_INLINE void add_row(auto& sum, R const& h, auto const& k) {
+      unroll<last - first>([&](auto m) POLHODE_LAMBDA {
+        constexpr int j = first + m;
+        if constexpr (!row[j].is_zero()) add(sum, R(row[j].template as<R>() * h), k[j]);
+      });
+    }
+    /// q(s).
+    template <class R>
+    static R weight_inside(auto const& row, R const& s) {
+      constexpr std::size_t n = std::extent_v<std::remove_reference_t<decltype(row)>>;
+      auto const d = [&row](std::size_t i) { return i < n ? row[i].template as<R>() : R(0.0); };
+      return d(0) + s * (d(1) + (R(1.0) - s) * (d(2) + s * d(3)));
+    }
 };
 
 /// Kutta's method on flat coordinates.   order 4, 4 stages, 4 evaluations per step; keeps nothing

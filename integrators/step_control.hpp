@@ -8,22 +8,38 @@
 
 namespace polhode {
 
+/// The constants of the rule: after an error e (1 is what is allowed) and one of e_last before it the next step is
+///   h clamp(safety e^-(1/order - 3/4 memory) e_last^memory, least, most)
+/// Source: Hairer, Norsett & Wanner I, II.4 and IV.2, codes DOPRI5 and DOP853.
+struct StepRule {
+  double safety = 0.9, least = 0.2, most = 10;
+  double memory = 0;  ///< beta; 0 is plain integral control
+};
+
 /// Drives a pair (see EmbeddedPair) with error control per component: |e_i| <= atol + rtol max(|y_i|, |y_new,i|), RMS.
+///
 /// fails   Status::step_underflow if the step falls below 10 ulp of t, Status::max_steps after `most` trial steps in
 /// one
 ///         advance, Status::diverged if the state or its slope is not finite
-template <class Pair, Problem P>
+///
+/// keeps_inside: the stepper has interpolate(), for a pair with a continuous extension. It copies the slopes of every
+/// accepted step, which costs memory and some time (dopri5 on one body 6%), but evaluates nothing until asked.
+template <class Pair, Problem P, bool keeps_inside = false>
 class Controlled {
   using M = typename P::Space;
   using S = typename M::Scalar;
   using R = Real<S>;
 
  public:
+  /// There is interpolate().
+  static constexpr bool dense = keeps_inside;
+
   Controlled(Pair pair, P const& problem, Adaptive control, NormPolicy policy)
       : pair_(std::move(pair)), problem_(&problem), control_(control), policy_(policy), frame_(shape_of(problem)) {
     if constexpr (PowerSpace<M>) {
       slope_ = shaped_like<Chart<M>>(problem.initial());
       trial_.fit(problem.initial());
+      if constexpr (dense) kept_.inside.fit(problem.initial());
     }
   }
 
@@ -50,24 +66,28 @@ class Controlled {
       auto&& frame = frame_.open();
       frame.k[0] = slope_;
       pair_.attempt(*problem_, t, h, x, frame, trial_.y, trial_.slope, trial_.error);
-      double const size = norm(trial_.error, x, trial_.y);
+      double const size = size_of_error(h, x, frame);
       if (!std::isfinite(size)) {
         if (++work_.rejected; !all_finite(x)) return Status::diverged;
         h_ = h * R(0.1);
         rejected_before = true;
         continue;
       }
-      double const exponent = 1.0 / pair_.order;
-      // 0.75 of the plain exponent, and the last error's memory: the PI constants of DOPRI5 (beta = 0.04).
-      double const factor = std::pow(size, exponent - 0.03) / std::pow(last_size_, 0.04);
+      constexpr double exponent = 1.0 / Pair::order - 0.75 * rule.memory;
+      double const factor = std::pow(size, exponent) / std::pow(last_size_, rule.memory);
       if (size <= 1) {
-        double const growth = std::clamp(0.9 / std::max(factor, 1e-10), 0.2, 10.0);
+        double const growth = std::clamp(rule.safety / std::max(factor, 1e-10), rule.least, rule.most);
         // A step cut short by t_end says little about the next one.
         if (!last || h == h_ || growth < 1) h_ = h * R(rejected_before ? std::min(growth, 1.0) : growth);
         last_size_ = std::max(size, 1e-4);
+        R const end = last ? t_end : R(t + h);
+        if constexpr (dense) keep(x, t, end, frame);
         x = trial_.y;
-        slope_ = trial_.slope;
-        t = last ? t_end : R(t + h);
+        if constexpr (Pair::first_same_as_last)
+          slope_ = trial_.slope;
+        else
+          fresh_slope_ = false;
+        t = end;
         ++work_.steps;
         if (policy_ != NormPolicy::none) {
           projections_.template apply<M>(x, policy_);
@@ -77,7 +97,7 @@ class Controlled {
       }
       ++work_.rejected;
       rejected_before = true;
-      h_ = h * R(std::max(0.2, 0.9 / std::pow(size, exponent - 0.03)));
+      h_ = h * R(std::max(rule.least, rule.safety / std::pow(size, exponent)));
     }
     return Status::max_steps;
   }
@@ -86,17 +106,35 @@ class Controlled {
   void restart() {
     fresh_slope_ = false;
     last_size_ = 1e-4;
+    if constexpr (dense) kept_.goes_on = false;
   }
   /// A new run: the step size is forgotten, too.
   void begin() {
     restart();
     h_ = R(0.0);
   }
+  /// The state at time t [s] within the last accepted step, on the constraint if the policy is to project. The first
+  /// call after a step pays the evaluations that the extension needs beyond the step's own. Not after restart(): the
+  /// field may be another.
+  void interpolate(R const& t, Point<M>& x) requires(dense) {
+    R const h = kept_.end - kept_.begin;
+    if (!kept_.complete) {
+      pair_.complete(*problem_, kept_.begin, kept_.end, kept_.inside);
+      kept_.complete = true;
+      if (kept_.goes_on && !fresh_slope_ && policy_ == NormPolicy::none) {
+        slope_ = pair_.template last_slope<M>(kept_.inside);
+        fresh_slope_ = true;
+      }
+    }
+    pair_.template interpolate<M>(R((t - kept_.begin) / h), h, kept_.inside, x);
+    if (policy_ != NormPolicy::none) Projections{}.template apply<M>(x, policy_);
+  }
   Work work() const { return work_; }
   Projections projections() const { return projections_; }
 
  private:
   static constexpr std::int64_t most = 10'000'000;
+  static constexpr StepRule rule = Pair::rule;
 
   double norm(Chart<M> const& error, Point<M> const& x, Point<M> const& y) const {
     double sum = 0;
@@ -108,6 +146,17 @@ class Controlled {
         },
         error, x, y);
     return std::sqrt(sum / size_of(error));
+  }
+  /// Of the trial step of h, by 1.
+  double size_of_error([[maybe_unused]] R const& h, Point<M> const& x, [[maybe_unused]] auto const& frame) {
+    double const size = norm(trial_.error, x, trial_.y);
+    if constexpr (Pair::two_estimates) {
+      pair_.template estimate_third<M>(h, frame, trial_.third);
+      double const third = norm(trial_.third, x, trial_.y);
+      return size > 0 ? size * size / std::sqrt(size * size + 0.01 * third * third) : size;
+    } else {
+      return size;
+    }
   }
   /// Hairer, Norsett & Wanner I, II.4, "starting step size".
   R starting_step(Point<M> const& x, R const& t, R const& longest) {
@@ -134,12 +183,31 @@ class Controlled {
   /// What a trial step gives.
   struct Trial {
     Point<M> y;
-    Chart<M> slope, error;
+    Chart<M> slope, error, third;
     void fit(Point<M> const& x) {
       y = x;
       slope = error = shaped_like<Chart<M>>(x);
+      if constexpr (Pair::two_estimates) third = error;
     }
   };
+  /// What is kept of the last step, from begin to end [s].
+  struct Kept {
+    bool complete = false;
+    bool goes_on = false;  ///< the next step begins where this one ended
+    R begin = R(0.0), end = R(0.0);
+    typename Pair::template Inside<M> inside;
+  };
+  struct Nothing {};
+  POLHODE_INLINE void keep(Point<M> const& x, R const& begin, R const& end, auto const& frame) {
+    kept_.begin = begin;
+    kept_.end = end;
+    kept_.complete = false;
+    kept_.goes_on = true;
+    kept_.inside.x = x;
+    kept_.inside.y = trial_.y;
+    std::copy(frame.k.begin(), frame.k.end(), kept_.inside.made.k.begin());
+    if constexpr (Pair::first_same_as_last) kept_.inside.made.k[frame.k.size()] = trial_.slope;
+  }
 
   Pair pair_;
   P const* problem_;
@@ -148,6 +216,7 @@ class Controlled {
   Workspace<M, typename Pair::template Frame<M>> frame_;
   Chart<M> slope_;
   Trial trial_;
+  [[no_unique_address]] std::conditional_t<dense, Kept, Nothing> kept_;
   bool fresh_slope_ = false;
   R h_ = R(0.0);
   double last_size_ = 1e-4;

@@ -1,6 +1,7 @@
 #pragma once
 /// Butcher tableaus of explicit methods, as exact fractions: right in any scalar.
 #include <array>
+#include <stdexcept>
 
 #include "integrators/integrator.hpp"
 
@@ -13,7 +14,41 @@ struct Ratio {
   constexpr R as() const {
     return R(double(over)) / R(double(under));
   }
+  constexpr bool is_zero() const { return over == 0; }
 };
+
+/// A coefficient that is published in digits, to quadruple precision; at no cost in double.
+struct Decimal {
+  Quad value = 0;
+  template <class R>
+  constexpr R as() const {
+    return R(value);
+  }
+  constexpr bool is_zero() const { return value == 0; }
+  constexpr Decimal operator-() const { return {-value}; }
+};
+__extension__ typedef unsigned __int128 Digits;
+/// 0.0123_q: at most 38 digits from the first that is not 0, so that they are exact, and 48 after the point, so that
+/// the power of ten is. What is left is two roundings.
+consteval Decimal operator""_q(char const* text) {
+  Digits digits = 0;
+  Quad scale = 1;
+  int places = 0;
+  bool fraction = false;
+  for (; *text != 0; ++text) {
+    if (*text == '.') {
+      fraction = true;
+      continue;
+    }
+    if (*text < '0' || '9' < *text) throw std::invalid_argument("digits and a point");
+    if (digits > (~Digits(0) - 9) / 10) throw std::invalid_argument("at most 38 digits");
+    digits = 10 * digits + Digits(*text - '0');
+    if (!fraction) continue;
+    if (++places > 48) throw std::invalid_argument("at most 48 places");
+    scale *= 10;
+  }
+  return {Quad(digits) / scale};
+}
 
 ///   0 |               Euler (1768)
 ///     | 1
@@ -38,8 +73,13 @@ struct Kutta4 {
 
 /// Dormand & Prince (1980), J. Comput. Appl. Math. 6, 19: order 5(4), first same as last.
 /// Hairer-Norsett-Wanner I, table II.5.2. Six stages make the step; the seventh is f at its end, for the error alone.
+/// Continuous extension: eq. (II.6.12), see EmbeddedPair.
+///
+/// Every pair has: `stages` that make the step; `pair_stages` that estimate its error; with first_same_as_last the
+/// slope at the step's end besides. `e`, by stages, is b - b^ of order error_order.
 struct DormandPrince5 {
-  static constexpr int stages = 6, order = 5, error_order = 4;
+  static constexpr int stages = 6, pair_stages = 6, order = 5, error_order = 4, dense_order = 4;
+  static constexpr bool first_same_as_last = true;
   static constexpr Ratio a[6][6] = {{},
                                     {{1, 5}},
                                     {{3, 40}, {9, 40}},
@@ -50,6 +90,14 @@ struct DormandPrince5 {
   static constexpr Ratio c[6] = {{}, {1, 5}, {3, 10}, {4, 5}, {8, 9}, {1, 1}};
   /// b - b^, the error row, last entry on f at the step's end.
   static constexpr Ratio e[7] = {{71, 57600}, {}, {-71, 16695}, {71, 1920}, {-17253, 339200}, {22, 525}, {-1, 40}};
+  /// d of q(s) = d0 + s d1, last row on f at the step's end.
+  static constexpr Ratio dense[7][2] = {{{-12793612615, 11282082432}, {157015080, 11282082432}},
+                                        {},
+                                        {{88272555100, 32700410799}, {-1570150800, 32700410799}},
+                                        {{-11083301675, 1880347072}, {785075400, 1880347072}},
+                                        {{759212249535, 199316789632}, {-114463993320, 199316789632}},
+                                        {{-1648467425, 822651844}, {389220480, 822651844}},
+                                        {{74144470, 29380423}, {-8293050, 29380423}}};
 };
 
 }  // namespace polhode

@@ -1,13 +1,21 @@
 /// Coefficients against the identities that define them, in quadruple precision.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 
 #include "integrators/gauss.hpp"
-#include "integrators/tableaus.hpp"
+#include "integrators/tableau_dop853.hpp"
+#include "integrators/tableaus_verner.hpp"
+#include "tests/rooted_trees.hpp"
 
 namespace polhode {
 namespace {
+
+using test::in_quad;
+using test::Matrix;
+using test::OrderConditions;
+using test::Row;
 
 double size(Quad x) {
   return double(fabsq(x));
@@ -20,115 +28,101 @@ Quad power(Quad x, int n) {
   return p;
 }
 
+// ---- Decimals -------------------------------------------------------------------------------------------------------
+
+TEST(Decimal, IsRightInQuadruplePrecision) {
+  EXPECT_LT(size((0.1_q).as<Quad>() * 10 - 1), 2e-34);
+  EXPECT_LT(size((0.333333333333333333333333333333333333_q).as<Quad>() * 3 - 1), 4e-34);
+  EXPECT_LT(size((-12.25_q).as<Quad>() + Quad(49) / 4), 1e-40);
+  EXPECT_TRUE((0_q).is_zero());
+  EXPECT_EQ((0.1_q).as<double>(), 0.1);
+  EXPECT_EQ((0.000802776240922250145361386981080252838_q).as<double>(), 0.000802776240922250145361386981080252838);
+}
+
 // ---- Explicit tableaus ----------------------------------------------------------------------------------------------
 
-/// Order conditions as far as order 5's simplest: weight . expression(stages) = value.  Hairer-Norsett-Wanner I, II.2
-struct Condition {
-  int order;
-  char const* tree;
-  Quad value;
-  Quad sum;
-};
+TEST(RootedTrees, AreAsManyAsThereAre) {
+  std::array<int, 10> counts{};
+  for (test::Tree const& tree : test::rooted_trees(10)) ++counts[std::size_t(tree.order) - 1];
+  EXPECT_EQ(counts, (std::array{1, 1, 2, 4, 9, 20, 48, 115, 286, 719}));
+}
 
-/// The conditions of the weights `b` on the matrix `a` of n stages.
-template <std::size_t n>
-std::vector<Condition> conditions(std::array<std::array<Quad, n>, n> const& a, std::array<Quad, n> const& b) {
-  std::array<Quad, n> c{}, ac{}, ac2{}, aac{};
-  auto const times = [&](auto const& v) {
-    std::array<Quad, n> result{};
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t j = 0; j < n; ++j) result[i] += a[i][j] * v[j];
-    return result;
-  };
-  std::array<Quad, n> one{}, c2{};
-  one.fill(1);
-  c = times(one);
-  for (std::size_t i = 0; i < n; ++i) c2[i] = c[i] * c[i];
-  ac = times(c);
-  ac2 = times(c2);
-  aac = times(ac);
-  auto const sum = [&](auto term) {
-    Quad total = 0;
-    for (std::size_t i = 0; i < n; ++i) total += b[i] * term(i);
+/// What rounding leaves of a condition: Verner6 has entries of 200 that cancel.
+double rounding_of(Matrix const& a, Row const& weights) {
+  auto const sum = [](Row const& row) {
+    double total = 0;
+    for (Quad entry : row) total += size(entry);
     return total;
   };
-  return {{1, "1", 1, sum([&](std::size_t) { return Quad(1); })},
-          {2, "c", Quad(1) / 2, sum([&](std::size_t i) { return c[i]; })},
-          {3, "c^2", Quad(1) / 3, sum([&](std::size_t i) { return c2[i]; })},
-          {3, "a c", Quad(1) / 6, sum([&](std::size_t i) { return ac[i]; })},
-          {4, "c^3", Quad(1) / 4, sum([&](std::size_t i) { return c2[i] * c[i]; })},
-          {4, "c a c", Quad(1) / 8, sum([&](std::size_t i) { return c[i] * ac[i]; })},
-          {4, "a c^2", Quad(1) / 12, sum([&](std::size_t i) { return ac2[i]; })},
-          {4, "a a c", Quad(1) / 24, sum([&](std::size_t i) { return aac[i]; })},
-          {5, "c^4", Quad(1) / 5, sum([&](std::size_t i) { return c2[i] * c2[i]; })},
-          {5, "(a c)^2", Quad(1) / 20, sum([&](std::size_t i) { return ac[i] * ac[i]; })}};
+  double widest = 1;
+  for (Row const& row : a) widest = std::max(widest, sum(row));
+  return 3e-34 * widest * std::max(1.0, sum(weights));
 }
 
 template <class Tableau>
 class ExplicitTableau : public testing::Test {
  public:
-  static constexpr std::size_t n = Tableau::stages;
-  std::array<std::array<Quad, n>, n> a{};
-  std::array<Quad, n> b{}, c{};
-
-  ExplicitTableau() {
-    for (std::size_t i = 0; i < n; ++i) {
-      b[i] = Tableau::b[i].template as<Quad>();
-      c[i] = Tableau::c[i].template as<Quad>();
-      for (std::size_t j = 0; j < n; ++j) a[i][j] = Tableau::a[i][j].template as<Quad>();
-    }
-  }
+  Matrix a = in_quad(Tableau::a);
+  Row b = in_quad(Tableau::b), c = in_quad(Tableau::c);
 };
-using Tableaus = testing::Types<Euler1, Kutta4, DormandPrince5>;
+using Tableaus = testing::Types<Euler1, Kutta4, DormandPrince5, DormandPrince853, Verner6, Verner7, Verner9>;
 TYPED_TEST_SUITE(ExplicitTableau, Tableaus);
 
 TYPED_TEST(ExplicitTableau, IsExplicitAndItsRowsSumToC) {
-  for (std::size_t i = 0; i < this->n; ++i) {
+  for (std::size_t i = 0; i < this->a.size(); ++i) {
     Quad sum = 0;
-    for (std::size_t j = 0; j < this->n; ++j) {
+    for (std::size_t j = 0; j < this->a.size(); ++j) {
       sum += this->a[i][j];
       if (j >= i) {
         EXPECT_EQ(size(this->a[i][j]), 0) << i << ", " << j;
       }
     }
-    EXPECT_LT(size(sum - this->c[i]), rounding) << "row " << i;
+    EXPECT_LT(size(sum - this->c[i]), rounding_of(this->a, {})) << "row " << i;
   }
 }
 
 TYPED_TEST(ExplicitTableau, MeetsEveryConditionOfItsOrder) {
-  bool misses_the_next = false;
-  for (Condition const& condition : conditions(this->a, this->b)) {
-    double const error = size(condition.sum - condition.value);
-    if (condition.order <= TypeParam::order) {
-      EXPECT_LT(error, rounding) << condition.tree;
-    }
-    if (condition.order == TypeParam::order + 1) misses_the_next = misses_the_next || error > 1e-3;
-  }
-  if (TypeParam::order < 5) {
-    EXPECT_TRUE(misses_the_next) << "the order is higher than stated";
-  }
+  OrderConditions const conditions(this->a, TypeParam::order + 1);
+  EXPECT_LT(conditions.defect_up_to(this->b, TypeParam::order), rounding_of(this->a, this->b));
+  EXPECT_GT(conditions.defect(this->b, TypeParam::order + 1), 1e-7) << "the order is higher than stated";
 }
 
-TEST(DormandPrince, ErrorRowIsTheDifferenceOfTwoMethods) {
-  using T = DormandPrince5;
-  // Seven stages: the last is f at the step's end, so its row is b.
-  std::array<std::array<Quad, 7>, 7> a{};
-  std::array<Quad, 7> e{};
-  Quad total = 0;
-  for (std::size_t i = 0; i < 7; ++i) {
-    e[i] = T::e[i].as<Quad>();
-    total += e[i];
-    for (std::size_t j = 0; j < 6; ++j) a[i][j] = i < 6 ? T::a[i][j].as<Quad>() : T::b[j].as<Quad>();
-  }
-  EXPECT_LT(size(total), rounding);
-  bool sees_order_5 = false;
-  for (Condition const& condition : conditions(a, e)) {
-    if (condition.order <= T::error_order) {
-      EXPECT_LT(size(condition.sum), rounding) << condition.tree;
+/// Entries of a that matter to the step, one at a time off by 1e-25.
+TYPED_TEST(ExplicitTableau, NoticesAWrongCoefficient) {
+  int changed = 0;
+  for (std::size_t i = 1; i < this->b.size(); ++i)
+    for (std::size_t j = 0; j < i; j += 3) {
+      Matrix wrong = this->a;
+      if (wrong[i][j] == 0) continue;
+      wrong[i][j] += Quad(1e-25);
+      EXPECT_GT(OrderConditions(wrong, TypeParam::order).defect_up_to(this->b, TypeParam::order),
+                rounding_of(wrong, this->b))
+          << i << ", " << j;
+      ++changed;
     }
-    if (condition.order == 5) sees_order_5 = sees_order_5 || size(condition.sum) > 1e-4;
-  }
-  EXPECT_TRUE(sees_order_5) << "an estimate that is always zero";
+  Row wrong = this->b;
+  wrong.back() += Quad(1e-25);
+  EXPECT_GT(OrderConditions(this->a, 1).defect(wrong, 1), 9e-26);
+  EXPECT_TRUE(changed > 0 || this->b.size() == 1);
+}
+
+template <class Tableau>
+class PairTableau : public testing::Test {};
+using Pairs = testing::Types<DormandPrince5, DormandPrince853, Verner6, Verner7, Verner9>;
+TYPED_TEST_SUITE(PairTableau, Pairs);
+
+TYPED_TEST(PairTableau, ErrorRowIsTheDifferenceOfTwoMethods) {
+  using T = TypeParam;
+  OrderConditions const conditions(test::all_stages<T>(), T::error_order + 1);
+  EXPECT_LT(conditions.defect_up_to(in_quad(T::e), T::error_order, 0),
+            rounding_of(test::all_stages<T>(), in_quad(T::e)));
+  EXPECT_GT(conditions.defect(in_quad(T::e), T::error_order + 1, 0), 1e-6) << "an estimate that is always zero";
+}
+
+TEST(DormandPrince853, HasASecondEstimateOfOrderThree) {
+  OrderConditions const conditions(in_quad(DormandPrince853::a), 4);
+  EXPECT_LT(conditions.defect_up_to(in_quad(DormandPrince853::third), 3, 0), 1e-31);
+  EXPECT_GT(conditions.defect(in_quad(DormandPrince853::third), 4, 0), 1e-4);
 }
 
 // ---- Gauss ----------------------------------------------------------------------------------------------------------
