@@ -1,9 +1,9 @@
 #pragma once
 /// SUNDIALS CVODE behind our face, unmodified. Memory is made in bind and lives across advance calls; restart()
 /// re-initialises at the next call. double, flat coordinates; rtol, atol per component.
-/// Adams runs with fixed-point iteration, BDF with Newton and a dense difference-quotient Jacobian: CVODE's guide,
-/// ch. 4. Source: Hindmarsh et al. (2005), ACM TOMS 31, 363; SUNDIALS 6.4
-#include "integrators/rivals/library_field.hpp"
+/// Adams runs with fixed-point iteration, BDF with Newton and a dense Jacobian, the problem's own or difference
+/// quotients: CVODE's guide, ch. 4. Source: Hindmarsh et al. (2005), ACM TOMS 31, 363; SUNDIALS 6.4
+#include "integrators/rivals/jacobian.hpp"
 #include "integrators/rivals/sundials.hpp"
 
 #ifdef POLHODE_HAS_SUNDIALS
@@ -57,6 +57,10 @@ class CvodeMemory {
   /// CVODE's own projection, for BDF: called after every step. Throws std::bad_alloc.
   void project_with(CVProjFn project) {
     if (CVodeSetProjFn(memory_.get(), project) != CV_SUCCESS) throw std::bad_alloc();
+  }
+  /// The Jacobian of Newton's iteration, for BDF. Throws std::bad_alloc.
+  void differentiate_with(CVLsJacFn jacobian) {
+    if (CVodeSetJacFn(memory_.get(), jacobian) != CV_SUCCESS) throw std::bad_alloc();
   }
   double* state() { return N_VGetArrayPointer(y_.get()); }
   void restart() { fresh_ = true; }
@@ -132,6 +136,8 @@ class CvodeStepper {
       : user_(new User{LibraryField<P>(problem), {}}),
         memory_(multistep, control, field, user_.get(), user_->field.size()) {
     if (policy == NormPolicy::native) memory_.project_with(project);
+    if constexpr (DifferentiableProblem<P>)
+      if (multistep == CV_BDF && problem.has_jacobian()) memory_.differentiate_with(jacobian);
   }
 
   /// x is read at a restart; between restarts CVODE's own state and history go on.
@@ -162,6 +168,11 @@ class CvodeStepper {
   }
   static int field(double t, N_Vector y, N_Vector dydt, void* user) {
     static_cast<User const*>(user)->field(t, N_VGetArrayPointer(y), N_VGetArrayPointer(dydt));
+    return 0;
+  }
+  static int jacobian(double t, N_Vector y, N_Vector, SUNMatrix matrix, void* user, N_Vector, N_Vector,
+                      N_Vector) requires DifferentiableProblem<P> {
+    write_jacobian(static_cast<User const*>(user)->field, t, N_VGetArrayPointer(y), SUNDenseMatrix_Data(matrix));
     return 0;
   }
   static int switching_functions(double t, N_Vector y, double* values, void* user) requires SwitchingProblem<P> {
@@ -199,6 +210,7 @@ struct Cvode {
       .no_projection = "projection would break the multistep history that the next step extrapolates",
       .projects_natively = stiff,  // CVodeSetProjFn knows BDF alone
       .not_built = sundials_not_built};
+  static constexpr bool uses_jacobian = stiff;
 #ifdef POLHODE_HAS_SUNDIALS
   template <Problem P>
     requires FlatSpace<typename P::Space> && std::same_as<typename P::Space::Scalar, double>
