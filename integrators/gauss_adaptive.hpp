@@ -1,0 +1,191 @@
+#pragma once
+/// Adaptive steps for Gauss collocation, on every space.
+///
+/// Error estimate: h gamma (f(x) - f^), f^ the slope that the stages' polynomial has where the step begins: the
+/// embedded formula with one more node, at c = 0, of order s; gamma = 1 / (s + 1)^2, that node's weight in Radau's
+/// quadrature. It falls as h^(s+1), the method's error as h^(2s+1), so the estimate is held to
+/// 0.1 tol^((s+1)/(2s)): errors then are in proportion to the tolerance that was asked for.
+///
+/// Sources: Hairer & Wanner, Solving ODEs II, IV.8 (estimate; the tolerance as in their code RADAU); Hairer, Norsett &
+/// Wanner, Solving ODEs I, II.4 (norm, starting step, controller); Gustafsson (1991), ACM TOMS 17, 533.
+#include <algorithm>
+#include <cmath>
+
+#include "integrators/gauss_stages.hpp"
+
+namespace polhode {
+
+/// What the error of each chart coordinate is small against: the coordinate itself on a flat space, 1 rad on a group.
+template <SmallSpace M>
+struct ChartScale {
+  static Chart<M> of(Point<M> const& x) {
+    if constexpr (M::flat) {
+      return M::centre(x);
+    } else {
+      Chart<M> one;
+      fill(one, 1.0);
+      return one;
+    }
+  }
+};
+template <SmallSpace A, SmallSpace B>
+struct ChartScale<Product<A, B>> {
+  static Chart<Product<A, B>> of(Point<Product<A, B>> const& x) {
+    return {ChartScale<A>::of(x.first), ChartScale<B>::of(x.second)};
+  }
+};
+
+/// |e_i| <= atol + rtol |scale_i| for the estimate e, RMS over components.
+/// evaluations  those of the stages, and one for the slope at x
+/// fails   Status::step_underflow if the step falls below 10 ulp of t, Status::nonlinear_fail if that is because stages
+///         cannot be solved, Status::max_steps after `most` trial steps in one advance, Status::diverged if the state
+///         or its slope is not finite
+template <Problem P>
+class GaussControlled {
+  using M = typename P::Space;
+  using S = typename M::Scalar;
+  using R = Real<S>;
+
+ public:
+  GaussControlled(int stages, P const& problem, Adaptive control, NormPolicy policy)
+      : stages_(stages),
+        problem_(&problem),
+        control_(inner(control, stages)),
+        policy_(policy),
+        method_(stages, shape_of(problem)) {
+    Point<M> const shape = shape_of(problem);
+    memory_.fit(shape);
+    trial_ = shape;
+    error_ = carry_ = shaped_like<Chart<M>>(shape);
+  }
+
+  Status advance(Point<M>& x, R t, R t_end) {
+    for (std::int64_t trials = work_.steps + work_.rejected; t < t_end;) {
+      if (Status const status = step(x, t, t_end); status != Status::ok) return status;
+      if (work_.steps + work_.rejected - trials > most) return Status::max_steps;
+    }
+    return Status::ok;
+  }
+  /// One accepted step, not beyond t_end; t moves.
+  Status step(Point<M>& x, R& t, R t_end) {
+    slope(*problem_, S(t), x, method_.velocity(), method_.start_slope());
+    if (!all_finite(method_.start_slope())) return Status::diverged;
+    if (!(R(0.0) < h_)) h_ = starting_step(x, t, t_end - t);
+    bool rejected_before = false, unsolved = false;
+    for (std::int64_t trial = 0; trial < most; ++trial) {
+      R const left = t_end - t;
+      bool const last = h_ * R(1.0 + 1e-10) >= left;
+      R const h = last ? left : h_;
+      if (double(h) <= 10 * std::numeric_limits<double>::epsilon() * std::fabs(double(t)) && !last)
+        return unsolved ? Status::nonlinear_fail : Status::step_underflow;
+      trial_ = x;
+      carry_ = memory_.carry;
+      method_.step(*problem_, S(t), h, trial_, memory_, true);
+      unsolved = memory_.unconverged;
+      double const size = unsolved ? std::numeric_limits<double>::infinity() : error_size(h, x);
+      double const exponent = 1.0 / (stages_ + 1), memory = 0.2 * exponent;
+      if (size <= 1) {
+        double const factor = std::pow(size, exponent - 0.75 * memory) / std::pow(last_size_, memory);
+        double const growth = std::clamp(0.9 / std::max(factor, 1e-10), 0.2, 5.0);
+        // A step cut short by t_end says little about the next one.
+        if (!last || h == h_ || growth < 1) h_ = h * R(rejected_before ? std::min(growth, 1.0) : growth);
+        last_size_ = std::max(size, 1e-4);
+        std::swap(x, trial_);
+        t = last ? t_end : R(t + h);
+        ++work_.steps;
+        if (policy_ != NormPolicy::none) projections_.template apply<M>(x, policy_);
+        return Status::ok;
+      }
+      ++work_.rejected;
+      if (!all_finite(x)) return Status::diverged;
+      rejected_before = true;
+      memory_.carry = carry_;
+      memory_.last_step = R(0.0);
+      memory_.unconverged = false;
+      double const shrink = std::isfinite(size) ? 0.9 / std::pow(size, exponent - 0.75 * memory) : 0.0;
+      h_ = h * R(std::max(0.2, shrink));
+    }
+    return Status::max_steps;
+  }
+  /// The error's memory and the last step are forgotten, the step size is kept: the field jumped, the time scale hardly
+  /// did.
+  void restart() {
+    memory_.restart();
+    last_size_ = 1e-4;
+  }
+  /// A new run: the step size is forgotten, too.
+  void begin() {
+    restart();
+    h_ = R(0.0);
+  }
+  Work work() const {
+    Work work = work_;
+    work.iterations = memory_.iterations;
+    work.jacobians = memory_.jacobians;
+    return work;
+  }
+  Projections projections() const { return projections_; }
+
+ private:
+  static constexpr std::int64_t most = 10'000'000;
+  using Body = typename BodyOf<M>::type;
+
+  /// The tolerance that the estimate is held to.
+  static Adaptive inner(Adaptive const& asked, int stages) {
+    double const exponent = (stages + 1) / (2.0 * stages);
+    if (!(asked.rtol > 0)) return {0, 0.1 * std::pow(asked.atol, exponent)};
+    double const rtol = 0.1 * std::pow(asked.rtol, exponent);
+    return {rtol, rtol * asked.atol / asked.rtol};
+  }
+  /// Of the step from x to trial_.
+  double error_size(R const& h, Point<M> const& x) {
+    method_.slope_by_stages(error_);
+    Chart<M>::each([&](S& e, S const& slope) { e = h * slope - e; }, error_, method_.start_slope());
+    return norm(error_, x, trial_) / ((stages_ + 1) * (stages_ + 1));
+  }
+  /// RMS of k against the tolerance at x and y.
+  double norm(Chart<M> const& k, Point<M> const& x, Point<M> const& y) const {
+    double sum = 0;
+    for_each_body<M>(x, [&](auto const& at) {
+      Chart<Body>::each(
+          [&](S const& e, S const& a, S const& b) {
+            double const scale = control_.atol + control_.rtol * std::max(std::fabs(double(a)), std::fabs(double(b)));
+            double const part = double(e) / scale;
+            sum += part * part;
+          },
+          at(k), ChartScale<Body>::of(at(x)), ChartScale<Body>::of(at(y)));
+    });
+    return std::sqrt(sum / size_of(k));
+  }
+  /// Hairer, Norsett & Wanner I, II.4, "starting step size".
+  R starting_step(Point<M> const& x, R const& t, R const& longest) {
+    Chart<M> const& slope_here = method_.start_slope();
+    fill(carry_, 0.0);
+    for_each_body<M>(x, [&](auto const& at) { at(carry_) = ChartScale<Body>::of(at(x)); });
+    double const size = norm(carry_, x, x), speed = norm(slope_here, x, x);
+    double h = size < 1e-5 || speed < 1e-5 ? 1e-6 : 0.01 * size / speed;
+    h = std::min(h, double(longest));
+    displace<M>(
+        x, [&](auto& u, auto const& at) { add(u, R(h), at(slope_here)); }, error_, trial_);
+    slope(*problem_, S(t + R(h)), trial_, method_.velocity(), error_);
+    add(error_, R(-1.0), slope_here);
+    double const greatest = std::max(speed, norm(error_, x, x) / h);
+    double const h1 = greatest <= 1e-15 ? std::max(1e-6, h * 1e-3) : std::pow(0.01 / greatest, 1.0 / (stages_ + 1));
+    return R(std::min({100 * h, h1, double(longest)}));
+  }
+
+  int stages_;
+  P const* problem_;
+  Adaptive control_;
+  NormPolicy policy_;
+  GaussMethod<M> method_;
+  GaussMemory<M> memory_;
+  Point<M> trial_;
+  Chart<M> error_, carry_;
+  R h_ = R(0.0);
+  double last_size_ = 1e-4;
+  Work work_;
+  Projections projections_;
+};
+
+}  // namespace polhode
