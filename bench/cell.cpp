@@ -25,13 +25,6 @@ results::Status status_of(Status status) {
   return results::Status::crashed;
 }
 
-template <Space M>
-MethodOn<M> const& method_named(std::string_view name) {
-  for (MethodOn<M> const& entry : all_methods_on<M>())
-    if (entry.info->name == name) return entry;
-  throw std::out_of_range("no integrator " + std::string(name));
-}
-
 }  // namespace
 
 std::vector<Column> columns_of(PreparedCell const& prepared) {
@@ -117,15 +110,29 @@ std::string_view policy_refusal(MethodInfo const& info, NormPolicy policy) {
   return info.no_projection;
 }
 
+/// What a method needs of the problem beside its space; empty if it is there.
+template <Space M>
+std::string_view problem_refusal(Needs needs, Erased<M> const& field) {
+  if constexpr (requires { field.is_rigid_body(); }) {
+    if (needs == Needs::rigid_body && !field.is_rigid_body()) return "needs a rigid body whose inertia is known";
+    if (needs == Needs::free_body && !(field.is_rigid_body() && field.torque_free())) return "needs a free rigid body";
+  }
+  if constexpr (requires { field.prescribed_rates(); })
+    if (needs == Needs::prescribed_rates && !field.prescribed_rates())
+      return "needs an attitude under prescribed rates (problem coning)";
+  return "";
+}
+
 /// Why the combination does not run, in the order in which a user would want to know.
 std::string refusal_of(PreparedCell const& prepared) {
   std::string refusal = prepared.problem->refusal(prepared.cell.formulation);
   if (!refusal.empty()) return refusal;
   ProblemInFormulation const problem = prepared.problem->in(prepared.cell.formulation);
   std::visit(
-      [&]<Space M>(std::unique_ptr<Erased<M>> const&) {
+      [&]<Space M>(std::unique_ptr<Erased<M>> const& field) {
         MethodOn<M> const& method = method_named<M>(prepared.cell.integrator);
         refusal = method.refusal;
+        if (refusal.empty()) refusal = problem_refusal<M>(method.info->needs, *field);
         if (refusal.empty()) refusal = policy_refusal<M>(*method.info, prepared.plan.policy);
       },
       problem);

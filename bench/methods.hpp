@@ -3,10 +3,14 @@
 #include <cstdint>
 #include <exception>
 #include <memory>
+#include <stdexcept>
+#include <string>
 #include <variant>
+#include <vector>
 
 #include "bench/run_loop.hpp"
-#include "integrators/catalog.hpp"
+#include "integrators/catalog/lists.hpp"
+#include "integrators/integrator.hpp"
 #include "problems/erased.hpp"
 
 namespace polhode::bench {
@@ -63,6 +67,15 @@ class Watch {
   virtual void multiplier(Vec3<double> const&) {}
 };
 
+/// One method bound to one problem: what is timed. Everything is made beforehand; solve() starts anew each time.
+class TimedSolve {
+ public:
+  virtual ~TimedSolve() = default;
+  virtual Status solve() = 0;
+  /// The state where the last solve ended, components in storage order.
+  virtual std::vector<double> end_state() const = 0;
+};
+
 /// One integrator on one space.
 template <Space M>
 struct MethodOn {
@@ -71,6 +84,8 @@ struct MethodOn {
   bool fixed = false, adaptive = false;  ///< which controls the method knows, on any space
   std::string_view refusal;              ///< why it does not run on this space; empty if it does
   Solve solve = nullptr;                 ///< null if refused
+  using Timed = std::unique_ptr<TimedSolve> (*)(std::unique_ptr<Erased<M>> problem, Plan const& plan);
+  Timed timed = nullptr;  ///< null if refused
 };
 
 /// One list of the catalogue on space M, in catalogue order.
@@ -89,6 +104,14 @@ std::vector<MethodOn<M>> const& all_methods_on() {
     return joined;
   }(MethodLists{});
   return all;
+}
+
+/// The one of that name. Throws std::out_of_range.
+template <Space M>
+MethodOn<M> const& method_named(std::string_view name) {
+  for (MethodOn<M> const& entry : all_methods_on<M>())
+    if (entry.info->name == name) return entry;
+  throw std::out_of_range("no integrator " + std::string(name));
 }
 
 /// Calls f(bound stepper) with the method driven as the plan says.

@@ -1,8 +1,10 @@
-/// One list of the catalogue (POLHODE_METHODS: a member of MethodLists), compiled for erased problems on every space of
-/// one kind (POLHODE_SPACES: OneBodySpaces, AttitudesSpaces, BodiesSpaces or PositionSpaces).
+/// One list of the catalogue (POLHODE_METHODS, from POLHODE_METHODS_HEADER), compiled for erased problems on every
+/// space of one kind (POLHODE_SPACES: OneBodySpaces, AttitudesSpaces, BodiesSpaces or PositionSpaces).
 #include <tuple>
 
 #include "bench/methods.hpp"
+#include "bench/timed_solve.hpp"
+#include POLHODE_METHODS_HEADER
 
 namespace polhode::bench {
 namespace {
@@ -42,10 +44,14 @@ MethodOn<M> method_on() {
   }
   if constexpr (refusal<M>(Method::info.needs).empty() && Method::info.not_built.empty()) {
     static_assert(IntegratorFor<Method, Erased<M>> || PowerSpace<M>, "a method that is not refused must bind");
-    if constexpr (IntegratorFor<Method, Erased<M>>)
+    if constexpr (IntegratorFor<Method, Erased<M>>) {
       entry.solve = solve<M, Method>;
-    else
+      entry.timed = [](std::unique_ptr<Erased<M>> problem, Plan const& plan) {
+        return timed_solve_of<Method, Erased<M>>(std::move(problem), plan);
+      };
+    } else {
       entry.refusal = "is written for one body";
+    }
   }
   return entry;
 }

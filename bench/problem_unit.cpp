@@ -1,7 +1,8 @@
-/// Everything that one problem of the catalogue needs compiled, apart from its timed solves.
-/// POLHODE_PROBLEM is the problem's type; the build makes one unit for each line of problems/catalog.hpp.
+/// Everything that one problem of the catalogue needs compiled, apart from its races.
+/// POLHODE_PROBLEM is the problem's type, from POLHODE_PROBLEM_HEADER; the build makes one unit for each line of
+/// problems/catalog.hpp. POLHODE_RACED says that it has races.
 #include "bench/problems.hpp"
-#include "problems/catalog.hpp"
+#include POLHODE_PROBLEM_HEADER
 
 namespace polhode::bench {
 namespace {
@@ -40,15 +41,20 @@ class Chosen final : public ChosenProblem {
   SeriesProblem as_series() const override { return erased<SeriesProblem, Series, FlatQuaternion>(); }
   QuadProblem in_quad() const override { return erased<QuadProblem, Quad, S3>(); }
 
-  std::unique_ptr<TimedSolve> timed([[maybe_unused]] std::string_view formulation,
-                                    [[maybe_unused]] std::string_view integrator,
-                                    [[maybe_unused]] Plan const& plan) const override {
-#ifdef POLHODE_RACES
-    auto own = timed_solve<D, RacedMethods>(definition_, formulation, integrator, plan);
-    return own ? std::move(own) : timed_solve<D, Rivals>(definition_, formulation, integrator, plan);
-#else
-    return nullptr;
+  std::unique_ptr<TimedSolve> timed(std::string_view formulation, std::string_view integrator,
+                                    Plan const& plan) const override {
+#ifdef POLHODE_RACED
+    if (is_principal(definition_) && is_plain(definition_)) {
+      auto own = timed_solve<D, RacedMethods>(definition_, formulation, integrator, plan);
+      return own ? std::move(own) : timed_solve<D, Rivals>(definition_, formulation, integrator, plan);
+    }
 #endif
+    return std::visit(
+        [&]<Space M>(std::unique_ptr<Erased<M>> field) {
+          MethodOn<M> const& method = method_named<M>(integrator);
+          return method.timed ? method.timed(std::move(field), plan) : nullptr;
+        },
+        in(formulation));
   }
 
  private:

@@ -32,15 +32,6 @@ using ProblemInFormulation =
 using SeriesProblem = detail::ErasedOn<detail::Kinds<FlatQuaternion<Series>>>::type;
 using QuadProblem = detail::ErasedOn<detail::Kinds<S3<Quad>>>::type;
 
-/// One method bound to one typed problem: what is timed. Everything is made beforehand; solve() starts anew each time.
-class TimedSolve {
- public:
-  virtual ~TimedSolve() = default;
-  virtual Status solve() = 0;
-  /// The state where the last solve ended, components in storage order.
-  virtual std::vector<double> end_state() const = 0;
-};
-
 /// A problem as the user chose it.
 class ChosenProblem {
  public:
@@ -67,8 +58,9 @@ class ChosenProblem {
   virtual ProblemInFormulation in(std::string_view formulation) const = 0;
   virtual SeriesProblem as_series() const = 0;
   virtual QuadProblem in_quad() const = 0;
-  /// Null if the integrator is refused on the formulation, or the formulation is not timed, or nothing is in this build
-  /// (POLHODE_RACES).
+  /// On raced problems typed code; null for methods and formulations that are not raced. On others, and where an
+  /// inertia has products, everything goes through virtual calls. Null, too, if the integrator is refused on the
+  /// formulation.
   virtual std::unique_ptr<TimedSolve> timed(std::string_view formulation, std::string_view integrator,
                                             Plan const& plan) const = 0;
 };
@@ -124,7 +116,8 @@ using FormulationsOf = typename detail::FormulationsOf<D>::type;
 template <Definition D>
 using TimedFormulationsOf = typename detail::TimedFormulationsOf<D>::type;
 
-/// Each problem's own translation units define these two.
+/// Each problem's own translation units define these two; the second those of raced problems.
+/// Methods is RacedMethods or Rivals.
 template <Definition D>
 ProblemEntry const& problem_entry();
 template <Definition D, class Methods>

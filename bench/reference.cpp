@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 
+#include "integrators/gauss.hpp"
 #include "problems/exact.hpp"
 
 namespace polhode::bench {

@@ -45,7 +45,17 @@ struct Work {
 enum class Family { explicit_rk, gauss, lie_group, rigid_body, splitting, exact, taylor, library };
 
 /// What a method asks of a problem or its space. Refusals are rows, with this as their reason.
-enum class Needs { none, flat, group, free_body, constraint, constraint_on_group, constraint_on_quaternion };
+enum class Needs {
+  none,
+  flat,
+  group,
+  free_body,         ///< a rigid body without torque
+  rigid_body,        ///< a rigid body whose inertia is known
+  prescribed_rates,  ///< an attitude whose rate depends on time alone
+  constraint,
+  constraint_on_group,
+  constraint_on_quaternion
+};
 
 /// What a method keeps to round-off or boundedly; a claim that the tests measure. Combine with |.
 enum Preserves : unsigned {
@@ -98,6 +108,18 @@ inline constexpr bool is_moving_body = false;
 template <Attitude A>
 inline constexpr bool is_moving_body<MovingBody<A>> = true;
 
+/// One rigid body whose attitude is a quaternion or a matrix, held by nobody or by the group.
+template <class M>
+concept TurningBody = SmallSpace<M> &&
+    (std::same_as<Point<M>, Pair<Quat<typename M::Scalar>, Vec3<typename M::Scalar>>> ||
+     std::same_as<Point<M>, Pair<Mat3<typename M::Scalar>, Vec3<typename M::Scalar>>>);
+
+/// Attitudes alone, of one body or many.
+template <class M>
+inline constexpr bool is_attitudes = false;
+template <Attitude A, int n>
+inline constexpr bool is_attitudes<Power<A, n>> = true;
+
 /// Why a method cannot run on a space; empty if it can.
 template <class M>
 constexpr std::string_view refusal(Needs needs) {
@@ -108,6 +130,12 @@ constexpr std::string_view refusal(Needs needs) {
       if (needs == Needs::constraint_on_quaternion && !(M::flat && Point<typename M::Factor::Factor>::size == 4))
         return "needs flat quaternions (formulation quaternion)";
     return "";
+  }
+  if ((needs == Needs::free_body || needs == Needs::rigid_body) && !TurningBody<M>)
+    return "needs one rigid body on quaternions or matrices";
+  if (needs == Needs::prescribed_rates) {
+    if (!is_attitudes<M>) return "needs an attitude under prescribed rates (problem coning)";
+    return refusal<M>(Needs::group);
   }
   if (needs == Needs::flat && !M::flat) return "needs flat coordinates";
   if (needs == Needs::group && M::flat) return "needs a rotation group (formulation s3 or so3)";

@@ -22,6 +22,7 @@ struct LieVariational2 {
       .name = "lgvi2",
       .family = Family::rigid_body,
       .order = 2,
+      .needs = Needs::rigid_body,
       .preserves = keeps_norm | keeps_energy | keeps_momentum | keeps_momentum_direction | is_symplectic | is_symmetric,
       .source = "Lee, Leok & McClamroch (2007), Comput. Methods Appl. Mech. Engrg. 196, 2907",
       .pitfall = "without a torque every invariant is right and the phase is wrong by O(h^2)"};

@@ -10,10 +10,10 @@
 
 namespace polhode {
 
-/// A field that depends on time alone: it says `static constexpr bool prescribed_rates = true`.
+/// A field that depends on time alone, if prescribed_rates() is true.
 template <class P>
-concept PrescribedRates = Problem<P> && requires {
-  requires P::prescribed_rates;
+concept PrescribedRates = Problem<P> && requires(P const p) {
+  { p.prescribed_rates() } -> std::same_as<bool>;
 };
 
 /// Rates at s Gauss points; order 2s.
@@ -82,7 +82,7 @@ struct Magnus4 : Magnus<2> {
   static constexpr MethodInfo info{.name = "magnus4",
                                    .family = Family::lie_group,
                                    .order = 4,
-                                   .needs = Needs::group,
+                                   .needs = Needs::prescribed_rates,
                                    .preserves = keeps_norm | is_symmetric,
                                    .source = "Iserles & Norsett (1999), Phil. Trans. R. Soc. A 357, 983",
                                    .pitfall = "for rates that depend on time alone"};
@@ -93,7 +93,7 @@ struct Magnus6 : Magnus<3> {
   static constexpr MethodInfo info{.name = "magnus6",
                                    .family = Family::lie_group,
                                    .order = 6,
-                                   .needs = Needs::group,
+                                   .needs = Needs::prescribed_rates,
                                    .preserves = keeps_norm | is_symmetric,
                                    .source = "Blanes, Casas, Oteo & Ros (2009), Physics Reports 470, 151, sec. 5.4",
                                    .pitfall = "for rates that depend on time alone"};

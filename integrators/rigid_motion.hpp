@@ -12,12 +12,6 @@
 
 namespace polhode {
 
-/// One rigid body whose attitude is a quaternion or a matrix, held by nobody or by the group.
-template <class M>
-concept TurningBody = SmallSpace<M> &&
-    (std::same_as<Point<M>, Pair<Quat<typename M::Scalar>, Vec3<typename M::Scalar>>> ||
-     std::same_as<Point<M>, Pair<Mat3<typename M::Scalar>, Vec3<typename M::Scalar>>>);
-
 /// A problem that is one rigid body under Euler's equation,  J omega' = J omega x omega + torque.
 ///   inertia_matrix()       J [kg m^2, body]
 ///   torque_free()          no torque, ever

@@ -237,6 +237,7 @@ struct Splitting {
     return {.name = name,
             .family = Family::splitting,
             .order = Composition::order,
+            .needs = Needs::rigid_body,
             .preserves = keeps_norm | (Free<double>::exact ? keeps_energy : 0u) | keeps_momentum |
                          keeps_momentum_direction | is_symplectic | is_symmetric,
             .source = Composition::order == 2 ? Free<double>::source : Composition::source,

@@ -1,6 +1,7 @@
 #pragma once
 /// Every problem. Adding one is a header and a line here; the rest of the project follows. (Formulations:
 /// formulations.hpp.)
+#include "problems/coning.hpp"
 #include "problems/dead_zone.hpp"
 #include "problems/formulations.hpp"
 #include "problems/free_body.hpp"
@@ -16,19 +17,26 @@
 namespace polhode {
 
 // clang-format off
-// One line each: the build makes one translation unit for every line between the brackets.
-using Problems = Types<
+// One line each: the build makes one translation unit for every line between the brackets, and includes the header of
+// that name.
+/// Methods are raced on these: compiled with them as typed code, as a user's own program would be.
+using RacedProblems = Types<
     FreeBody,
     PdSlew,
+    TetherCapture,
+    QuaternionSync
+    >;
+/// On these they are timed through virtual calls, our own as rivals.
+using OtherProblems = Types<
     HeavyTop,
     GravityGradient,
     KroghB5,
-    TetherCapture,
+    Coning,
     DeadZone,
-    QuaternionSync,
     GroupConsensus,
     So3Cooperative
     >;
 // clang-format on
+using Problems = Joined<RacedProblems, OtherProblems>;
 
 }  // namespace polhode

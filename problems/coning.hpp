@@ -49,7 +49,7 @@ template <Scalar S, Attitude A>
 struct ConingCraft {
   using Space = Attitudes<A>;
   using State = Point<Space>;
-  static constexpr bool prescribed_rates = true;
+  static constexpr bool prescribed_rates() { return true; }
 
   ConingMotion<Real<S>> motion;
 

@@ -16,6 +16,32 @@ namespace polhode {
 /// What the problems of one space show beside what all have: nothing,
 template <class M>
 class ErasedExtras {};
+/// or what methods for rigid bodies ask (integrators/rigid_motion.hpp), if the problem is one under Euler's equation,
+template <Attitude A>
+class ErasedExtras<RigidBody<A>> {
+  using S = typename A::Scalar;
+
+ public:
+  /// The attitude turns with the body rate, and the inertia is known; else the others must not be asked.
+  virtual bool is_rigid_body() const = 0;
+  virtual Mat3<Real<S>> inertia_matrix() const = 0;  ///< [kg m^2, body]
+  virtual bool torque_free() const = 0;
+  virtual bool torque_feels_rate() const = 0;
+  /// [N m, body]; counts as an evaluation.
+  virtual Vec3<S> torque(S const& t, Point<RigidBody<A>> const& x) const = 0;
+
+ protected:
+  ~ErasedExtras() = default;
+};
+/// or whether the rates of attitudes depend on time alone,
+template <Attitude A>
+class ErasedExtras<Attitudes<A>> {
+ public:
+  virtual bool prescribed_rates() const = 0;
+
+ protected:
+  ~ErasedExtras() = default;
+};
 /// or the mechanics of a constrained body, for methods that solve for the constraint.
 template <Attitude A>
 class ErasedExtras<MovingBody<A>> {
@@ -35,6 +61,8 @@ class Erased : public ErasedExtras<M> {
 
   virtual ~Erased() = default;
   virtual Point<M> initial() const = 0;
+  /// A new run: what controllers remember and the sides that are held are forgotten.
+  virtual void begin() = 0;
   /// Takes a sample: the held torque changes. Nothing for continuous problems.
   virtual void sample(Real<S> const& t, Point<M> const& x) = 0;
   /// Writes the problem's own columns; only runs in double show anything.
@@ -49,20 +77,24 @@ class Erased : public ErasedExtras<M> {
   virtual void event_values(S const& t, Point<M> const& x, std::span<S> g) const = 0;
   virtual void take_sides(Real<S> const& t, Point<M> const& x) = 0;
   virtual void cross(int k) = 0;
+  /// The derivative of the rate in flat coordinates, by columns, for problems that know it (dual_field.hpp).
+  virtual bool has_jacobian() const = 0;
+  virtual void jacobian(Real<S> const& t, Point<M> const& x, std::span<double> J) const = 0;
 
   Velocity<M> operator()(S const& t, Point<M> const& x) const requires SmallSpace<M> {
     Velocity<M> v;
-    ++evaluations_;
+    count();
     evaluate(t, x, v);
     return v;
   }
   void operator()(S const& t, Point<M> const& x, Velocity<M>& v) const requires PowerSpace<M> {
-    ++evaluations_;
+    count();
     evaluate(t, x, v);
   }
   std::int64_t evaluations() const { return evaluations_; }
 
  protected:
+  void count() const { ++evaluations_; }
   virtual void evaluate(S const& t, Point<M> const& x, Velocity<M>& v) const = 0;
 
  private:
@@ -72,6 +104,62 @@ class Erased : public ErasedExtras<M> {
 /// Owns a problem, and shows what only those of its space show.
 template <Problem P, class M = typename P::Space>
 class Erasing : public Erased<M> {
+ protected:
+  explicit Erasing(P problem) : problem_(std::move(problem)) {}
+  P problem_;
+};
+template <Problem P, Attitude A>
+class Erasing<P, RigidBody<A>> : public Erased<RigidBody<A>> {
+  using S = typename A::Scalar;
+  static constexpr bool rigid = requires(P const& p) { p.inertia_matrix(); };
+
+ public:
+  bool is_rigid_body() const override {
+    if constexpr (rigid)
+      return problem_.is_rigid_body();
+    else
+      return false;
+  }
+  Mat3<Real<S>> inertia_matrix() const override {
+    if constexpr (rigid)
+      return problem_.inertia_matrix();
+    else
+      return {};
+  }
+  bool torque_free() const override {
+    if constexpr (rigid)
+      return problem_.torque_free();
+    else
+      return false;
+  }
+  bool torque_feels_rate() const override {
+    if constexpr (rigid)
+      return problem_.torque_feels_rate();
+    else
+      return true;
+  }
+  Vec3<S> torque([[maybe_unused]] S const& t, [[maybe_unused]] Point<RigidBody<A>> const& x) const override {
+    this->count();
+    if constexpr (rigid)
+      return problem_.torque(t, x);
+    else
+      return {};
+  }
+
+ protected:
+  explicit Erasing(P problem) : problem_(std::move(problem)) {}
+  P problem_;
+};
+template <Problem P, Attitude A>
+class Erasing<P, Attitudes<A>> : public Erased<Attitudes<A>> {
+ public:
+  bool prescribed_rates() const override {
+    if constexpr (requires { problem_.prescribed_rates(); })
+      return problem_.prescribed_rates();
+    else
+      return false;
+  }
+
  protected:
   explicit Erasing(P problem) : problem_(std::move(problem)) {}
   P problem_;
@@ -93,7 +181,13 @@ class ErasedAs final : public Erasing<P> {
   using Erasing<P>::problem_;
 
  public:
-  explicit ErasedAs(P problem) : Erasing<P>(std::move(problem)) {}
+  explicit ErasedAs(P problem) : Erasing<P>(std::move(problem)), fresh_(problem_) {}
+  void begin() override {
+    if constexpr (requires { problem_.begin(); })
+      problem_.begin();
+    else
+      problem_ = fresh_;
+  }
   Point<M> initial() const override { return problem_.initial(); }
   void sample([[maybe_unused]] Real<S> const& t, [[maybe_unused]] Point<M> const& x) override {
     if constexpr (SampledProblem<P>) problem_.sample(t, x);
@@ -132,6 +226,16 @@ class ErasedAs final : public Erasing<P> {
   void cross([[maybe_unused]] int k) override {
     if constexpr (SwitchingProblem<P>) problem_.cross(k);
   }
+  bool has_jacobian() const override {
+    if constexpr (requires { problem_.has_jacobian(); })
+      return problem_.has_jacobian();
+    else
+      return false;
+  }
+  void jacobian([[maybe_unused]] Real<S> const& t, [[maybe_unused]] Point<M> const& x,
+                [[maybe_unused]] std::span<double> J) const override {
+    if constexpr (requires { problem_.jacobian(t, x, J); }) problem_.jacobian(t, x, J);
+  }
 
  protected:
   void evaluate(S const& t, Point<M> const& x, Velocity<M>& v) const override {
@@ -140,6 +244,12 @@ class ErasedAs final : public Erasing<P> {
     else
       v = problem_(t, x);
   }
+
+ private:
+  struct Nothing {
+    explicit Nothing(P const&) {}
+  };
+  std::conditional_t<std::copyable<P>, P const, Nothing> fresh_;
 };
 
 template <Problem P>

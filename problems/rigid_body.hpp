@@ -15,11 +15,13 @@ struct PrincipalInertia {
   Vec3<R> coupling;  ///< (J_y - J_z) / J_x, ... [1]
   Vec3<R> inverse;   ///< 1 / J [1/(kg m^2)]
   Vec3<R> moments;   ///< J [kg m^2]
+  R sign;
 
-  explicit PrincipalInertia(Vec3<R> const& J, R const& sign = R(1.0))
-      : coupling{sign * (J.y - J.z) / J.x, sign * (J.z - J.x) / J.y, sign * (J.x - J.y) / J.z},
+  explicit PrincipalInertia(Vec3<R> const& J, R const& s = R(1.0))
+      : coupling{s * (J.y - J.z) / J.x, s * (J.z - J.x) / J.y, s * (J.x - J.y) / J.z},
         inverse{R(1.0) / J.x, R(1.0) / J.y, R(1.0) / J.z},
-        moments(J) {}
+        moments(J),
+        sign(s) {}
 
   Mat3<R> matrix() const {
     R const none(0.0);
@@ -100,6 +102,7 @@ struct ControlledBody {
 
   /// What methods for rigid bodies ask: J [kg m^2, body]; the torque [N m, body], of sampled control the one that is
   /// held; whether there is any, and whether it depends on the body rate.
+  bool is_rigid_body() const { return inertia.sign == Real<S>(1.0); }  // not with the sign that one paper prints
   Mat3<Real<S>> inertia_matrix() const { return inertia.matrix(); }
   Vec3<S> torque(S const& t, State const& x) const {
     if constexpr (Control::sampled)

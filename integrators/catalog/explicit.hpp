@@ -1,0 +1,12 @@
+#pragma once
+/// Explicit Runge-Kutta methods.
+#include "integrators/catalog/lists.hpp"
+#include "integrators/high_order.hpp"
+#include "integrators/ode45.hpp"
+#include "integrators/runge_kutta.hpp"
+
+namespace polhode {
+
+struct ExplicitMethods : Types<Rk4, Dopri5, Dopri5Ode45, Dop853, Verner65, Verner76, Verner98> {};
+
+}  // namespace polhode

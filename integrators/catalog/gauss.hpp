@@ -1,0 +1,11 @@
+#pragma once
+/// Gauss collocation, and its foils.
+#include "integrators/catalog/lists.hpp"
+#include "integrators/gauss.hpp"
+
+namespace polhode {
+
+struct GaussMethods : Types<GaussEntry<1>, GaussEntry<2>, GaussEntry<3>, GaussEntry<4>,  // to round-off
+                            Gauss2Sweeps1, Gauss2Sweeps2, Gauss2Tol6> {};                // and not
+
+}  // namespace polhode
