@@ -60,14 +60,20 @@ void list_integrators(bool as_json) {
     fmt::print("{}\n", json.dump(1));
     return;
   }
-  fmt::print("{:<16} {:<12} {:>5}  {:<8} {:<6} {:<34} {}\n", "name", "family", "order", "steps", "needs", "keeps",
-             "source");
+  std::vector<std::array<std::string, 7>> rows{{"name", "family", "order", "steps", "needs", "keeps", "source"}};
   for (IntegratorWord const& word : words) {
     char const* steps = word.fixed && word.adaptive ? "both" : word.fixed ? "fixed" : "adaptive";
-    fmt::print("{:<16} {:<12} {:>5}  {:<8} {:<6} {:<34} {}{}\n", word.name, word.family,
-               word.order ? std::to_string(*word.order) : "-", steps, word.needs,
-               word.preserves.empty() ? "-" : fmt::format("{}", fmt::join(word.preserves, ",")), word.source,
-               word.not_built.empty() ? "" : "  (" + word.not_built + ")");
+    rows.push_back({word.name, word.family, word.order ? std::to_string(*word.order) : "-", steps, word.needs,
+                    word.preserves.empty() ? "-" : fmt::format("{}", fmt::join(word.preserves, ",")),
+                    word.source + (word.not_built.empty() ? "" : "  (" + word.not_built + ")")});
+  }
+  std::array<std::size_t, 7> width{};
+  for (auto const& row : rows)
+    for (std::size_t i = 0; i + 1 < row.size(); ++i) width[i] = std::max(width[i], row[i].size());
+  for (auto const& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) line += fmt::format("{:<{}}  ", row[i], width[i]);
+    fmt::print("{}\n", line.substr(0, line.find_last_not_of(' ') + 1));
   }
 }
 

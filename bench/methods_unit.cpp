@@ -30,13 +30,23 @@ Outcome solve(Erased<M>& problem, Plan const& plan, Watch<M>& watch) {
   });
 }
 
+/// Spaces such that every method runs on one of them.
+using Probes = Types<RigidBody<FlatQuaternion<double>>, RigidBody<S3<double>>, MovingBody<FlatQuaternion<double>>,
+                     MovingBody<S3<double>>, Attitudes<S3<double>>>;
+template <class Method, class... M>
+constexpr bool runs_fixed(Types<M...>) {
+  return (RunsFixed<Method, Erased<M>> || ...);
+}
+template <class Method, class... M>
+constexpr bool runs_adaptive(Types<M...>) {
+  return (RunsAdaptive<Method, Erased<M>> || ...);
+}
+
 template <Space M, class Method>
 MethodOn<M> method_on() {
-  using Flat = Erased<MovingBody<FlatQuaternion<double>>>;  // constrained: every method runs on one of the two
-  using Group = Erased<MovingBody<S3<double>>>;
   MethodOn<M> entry{.info = &Method::info,
-                    .fixed = RunsFixed<Method, Flat> || RunsFixed<Method, Group>,
-                    .adaptive = RunsAdaptive<Method, Flat> || RunsAdaptive<Method, Group>,
+                    .fixed = runs_fixed<Method>(Probes{}),
+                    .adaptive = runs_adaptive<Method>(Probes{}),
                     .refusal = refusal<M>(Method::info.needs)};
   if (!Method::info.not_built.empty()) {
     entry.refusal = Method::info.not_built;

@@ -2,6 +2,7 @@
 /// POLHODE_PROBLEM is the problem's type, from POLHODE_PROBLEM_HEADER; the build makes one unit for each line of
 /// problems/catalog.hpp. POLHODE_RACED says that it has races.
 #include "bench/problems.hpp"
+#include "problems/dual_field.hpp"
 #include POLHODE_PROBLEM_HEADER
 
 namespace polhode::bench {
@@ -66,13 +67,19 @@ class Chosen final : public ChosenProblem {
     if (!known) throw std::out_of_range("no formulation " + std::string(name));
     return found;
   }
-  /// The field as chosen, with its type forgotten. Throws std::out_of_range if no run lives on its space.
+  /// The field as chosen, with its type forgotten; in double on flat coordinates it knows its Jacobian, unless it is
+  /// too large for dense linear algebra. Throws std::out_of_range if no run lives on its space.
   template <class Any, Scalar S, template <class> class A>
   Any erased() const {
     std::optional<Any> any;
-    with_field<S, A>(definition_, [&](auto field) {
-      using Here = std::unique_ptr<Erased<typename decltype(field)::Space>>;
-      if constexpr (std::constructible_from<Any, Here>) any.emplace(erase_type(std::move(field)));
+    auto const keep = [&]<class P>(P field) {
+      if constexpr (std::constructible_from<Any, std::unique_ptr<Erased<typename P::Space>>>)
+        any.emplace(erase_type(std::move(field)));
+    };
+    with_field<S, A>(definition_, [&]<class P>(P field) {
+      if constexpr (std::same_as<S, double> && FlatSpace<typename P::Space>)
+        if (size_of(field.initial()) <= most_for_jacobian) return with_differentiable_field<A>(definition_, keep);
+      keep(std::move(field));
     });
     if (!any) throw std::out_of_range("no run lives on the space of " + D::info().name);
     return std::move(*any);
@@ -82,6 +89,7 @@ class Chosen final : public ChosenProblem {
     return ((F::name == name) || ...);
   }
 
+  static constexpr int most_for_jacobian = 500;  ///< numbers in a state
   D definition_;
 };
 
