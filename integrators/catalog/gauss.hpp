@@ -5,7 +5,8 @@
 
 namespace polhode {
 
-struct GaussMethods : Types<GaussEntry<1>, GaussEntry<2>, GaussEntry<3>, GaussEntry<4>,  // to round-off
-                            Gauss2Sweeps1, Gauss2Sweeps2, Gauss2Tol6> {};                // and not
+struct GaussMethods : Types<GaussEntry<1>, GaussEntry<2>, GaussEntry<3>, GaussEntry<4>, GaussEntry<5>, GaussEntry<6>,
+                            GaussEntry<7>, GaussEntry<8>,                  // to round-off
+                            Gauss2Sweeps1, Gauss2Sweeps2, Gauss2Tol6> {};  // and not
 
 }  // namespace polhode

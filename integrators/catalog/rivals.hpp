@@ -10,7 +10,7 @@
 namespace polhode {
 
 struct Rivals : Types<OdeintRk4, OdeintCashKarp54, OdeintDopri5, OdeintRkf78, OdeintBulirschStoer, OdeintAbm8,  // Boost
-                      Cvode<true>, Cvode<false>, ArkodeErk<4>, ArkodeErk<5>, ArkodeErk<8>, Ida, GslRk8pd, GslMsadams> {
-};  // SUNDIALS
+                      Cvode<true>, Cvode<false>, ArkodeErk<4>, ArkodeErk<5>, ArkodeErk<8>, ArkodeDirk, Ida, GslRk8pd,
+                      GslMsadams> {};  // SUNDIALS
 
 }  // namespace polhode
