@@ -109,6 +109,11 @@ bool has_runs(Facts const& facts, std::string_view problem) {
   return std::ranges::any_of(facts.runs, [&](Record const* run) { return run->of.problem == problem; });
 }
 
+double parameter(Cell const& cell, std::string const& name, double otherwise) {
+  auto const found = cell.set.find(name);
+  return found == cell.set.end() || found->second.size() != 1 ? otherwise : found->second.front();
+}
+
 std::optional<double> claimed(Record const& run, std::string_view name) {
   auto const claim = run.claims.find(std::string(name));
   return claim == run.claims.end() ? std::nullopt : finite(claim->second.value);

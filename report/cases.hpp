@@ -32,6 +32,9 @@ std::vector<CaseRuns> published_runs(Facts const& facts, Paper const& paper);
 /// True if the records hold a run of that problem, of whatever status.
 bool has_runs(Facts const& facts, std::string_view problem);
 
+/// A parameter that is one number; `otherwise`, the problem's own, if the cell does not set it.
+double parameter(results::Cell const& cell, std::string const& name, double otherwise);
+
 /// The value of a run's claim, if it has one that is finite.
 std::optional<double> claimed(results::Record const& run, std::string_view name);
 

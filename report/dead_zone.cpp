@@ -17,10 +17,6 @@ using results::Record;
 
 constexpr std::array axes{"x", "y", "z"};
 
-double parameter(Cell const& c, std::string const& name, double otherwise) {
-  auto const found = c.set.find(name);
-  return found == c.set.end() || found->second.size() != 1 ? otherwise : found->second.front();
-}
 double arrival_of(Cell const& c) {
   return parameter(c, "t_f", 50);  // the problem's own
 }

@@ -15,11 +15,6 @@ using results::Record;
 
 namespace {
 
-std::string slope_of(results::OrderFit const& fit) {
-  if (!fit.half_width) return fmt::format("~ {:.1f}", fit.slope);
-  return fmt::format("{:.{}f}", fit.slope, *fit.half_width < 0.1 ? 2 : 1);
-}
-
 Entry error_of(Record const& run) {
   return is_ok(run) ? number(run.attitude_error_end, 2) : Entry(std::string(name_of(run.status)));
 }
@@ -52,15 +47,22 @@ std::vector<Sweep> twins(Facts const& facts, std::string_view problem) {
   return fixed_sweeps(facts, [&](Cell const& c) { return of_problem(c) && kinds[key(c)] == 3; });
 }
 
-results::OrderResult order_of(Sweep const& sweep, double h_most) {
+results::OrderResult order_of(Sweep const& sweep, double h_most, ErrorKind const& kind) {
   std::vector<results::OrderPoint> points;
   for (Record const* run : sweep.runs) {
-    auto const error = finite(run->attitude_error_end);
-    if (is_ok(*run) && error && *run->of.h <= h_most) {
-      points.push_back({*run->of.h, *error, finite(run->reference_bar).value_or(0)});
-    }
+    auto const error = finite(kind.of(*run));
+    double const bar = kind.has_bar ? finite(run->reference_bar).value_or(0) : 0;
+    if (is_ok(*run) && error && *run->of.h <= h_most) points.push_back({*run->of.h, *error, bar});
   }
-  return results::fit_order(std::move(points));
+  results::OrderRules rules;
+  rules.round_off *= kind.scale;
+  rules.asymptotic *= kind.scale;
+  return results::fit_order(std::move(points), rules);
+}
+
+std::string slope_of(results::OrderFit const& fit) {
+  if (!fit.half_width) return fmt::format("~ {:.1f}", fit.slope);
+  return fmt::format("{:.{}f}", fit.slope, *fit.half_width < 0.1 ? 2 : 1);
 }
 
 Entry events_of(std::vector<Record const*> const& runs) {
@@ -108,29 +110,30 @@ Table error_table(std::string name, std::string caption, std::vector<Sweep> cons
   return table;
 }
 
-Panel error_panel(Facts const& facts, std::string title, std::vector<Sweep> const& sweeps) {
+Panel error_panel(Facts const& facts, std::string title, std::vector<Sweep> const& sweeps, ErrorKind const& kind) {
   Panel panel{.x = {"h [s]", true},
-              .y = {"attitude error at the end [rad]", true, 1e-16},
+              .y = {std::string(kind.label), true, 1e-16 * kind.scale},
               .curves = {},
-              .rounding = 1e-13,
+              .rounding = 1e-13 * kind.scale,
               .title = std::move(title)};
   for (Sweep const& sweep : sweeps) {
     Cell const& c = sweep.like();
     Curve curve{c.integrator, facts.style_of(c), {}};
     for (Record const* run : sweep.runs) {
-      auto const error = finite(run->attitude_error_end);
-      bool const grey = error && *error <= finite(run->reference_bar).value_or(0);
-      if (is_ok(*run) && error && *error > 0) curve.points.push_back({*run->of.h, *error, grey});
+      auto const error = finite(kind.of(*run));
+      bool const grey = error && kind.has_bar && *error <= finite(run->reference_bar).value_or(0);
+      if (is_ok(*run) && error && *error > 0)
+        curve.points.push_back({*run->of.h, std::max(*error, panel.y.least), grey});
     }
     if (!curve.points.empty()) panel.curves.push_back(std::move(curve));
   }
   return panel;
 }
 
-std::string orders_in_words(std::vector<Sweep> const& sweeps, double h_most) {
+std::string orders_in_words(std::vector<Sweep> const& sweeps, double h_most, ErrorKind const& kind) {
   std::vector<std::string> words;
   for (Sweep const& sweep : sweeps) {
-    auto const order = order_of(sweep, h_most);
+    auto const order = order_of(sweep, h_most, kind);
     if (order.fit) words.push_back(fmt::format("{} {}", sweep.like().integrator, slope_of(*order.fit)));
   }
   return fmt::format("{}", fmt::join(words, ", "));

@@ -1,9 +1,11 @@
 #pragma once
 /// Errors against the step where the field jumps or has kinks: a method that ends its steps on these events keeps its
-/// order, one that does not loses it.
+/// order, one that does not loses it. Orders of other errors, too.
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "report/facts.hpp"
@@ -17,8 +19,21 @@ std::vector<Sweep> fixed_sweeps(Facts const& facts, std::function<bool(results::
 /// The fixed sweeps of a problem that exist with the variant `unlocated` and without it, up to the same time.
 std::vector<Sweep> twins(Facts const& facts, std::string_view problem);
 
-/// The order of a sweep from the attitude errors at the end, at steps up to `h_most`.
-results::OrderResult order_of(Sweep const& sweep, double h_most = std::numeric_limits<double>::infinity());
+/// An error of a run: where it stands, and when it tells something.
+struct ErrorKind {
+  std::string_view label;  ///< of an axis, with its unit
+  std::optional<double> (*of)(results::Record const& run);
+  double scale = 1;     ///< what 1 rad is to attitudes: a 1e-12th of it is round-off, a tenth too large for an order
+  bool has_bar = true;  ///< the reference's bar is its own
+};
+inline constexpr ErrorKind attitude_at_end{"attitude error at the end [rad]",
+                                           [](results::Record const& run) { return run.attitude_error_end; }};
+
+/// The order of a sweep at steps up to `h_most`.
+results::OrderResult order_of(Sweep const& sweep, double h_most = std::numeric_limits<double>::infinity(),
+                              ErrorKind const& kind = attitude_at_end);
+/// A slope with no more digits than its interval allows; ~ before one through two points.
+std::string slope_of(results::OrderFit const& fit);
 
 /// How many state events were located: "3", "0 to 3" where runs differ; `absent` where there are none to locate.
 Entry events_of(std::vector<results::Record const*> const& runs);
@@ -27,10 +42,12 @@ Entry events_of(std::vector<results::Record const*> const& runs);
 Table error_table(std::string name, std::string caption, std::vector<Sweep> const& sweeps,
                   double h_most = std::numeric_limits<double>::infinity());
 
-/// Error at the end against the step, on logarithmic axes; grey below the reference's bar.
-Panel error_panel(Facts const& facts, std::string title, std::vector<Sweep> const& sweeps);
+/// Error against the step, on logarithmic axes; grey below the reference's bar.
+Panel error_panel(Facts const& facts, std::string title, std::vector<Sweep> const& sweeps,
+                  ErrorKind const& kind = attitude_at_end);
 
 /// "rk4 4.01, gauss2 4.00": the orders of these sweeps; empty if none has one.
-std::string orders_in_words(std::vector<Sweep> const& sweeps, double h_most = std::numeric_limits<double>::infinity());
+std::string orders_in_words(std::vector<Sweep> const& sweeps, double h_most = std::numeric_limits<double>::infinity(),
+                            ErrorKind const& kind = attitude_at_end);
 
 }  // namespace polhode::report

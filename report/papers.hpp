@@ -1,6 +1,6 @@
 #pragma once
 /// What is known of each paper before anything is computed: who wrote it, where its data come from, what it states,
-/// what is wrong in print. One Paper per problem, in `papers.cpp`; nothing here was measured.
+/// what is wrong in print. One Paper per problem, in `papers*.cpp`; nothing here was measured.
 #include <string_view>
 #include <vector>
 
@@ -48,5 +48,6 @@ Paper const& tether_capture();
 Paper const& quaternion_sync();
 Paper const& group_consensus();
 Paper const& dead_zone();
+Paper const& so3_cooperative();
 
 }  // namespace polhode::report

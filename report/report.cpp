@@ -29,6 +29,9 @@ Document document_of(results::Contents const& contents) {
   add_sync(document, facts);
   add_consensus(document, facts);
   add_dead_zone(document, facts);
+  add_so3(document, facts);
+  add_classics(document, facts);
+  add_constrained(document, facts);
   add_orders(document, facts);
   add_failures(document, facts);
   add_references(document, facts);

@@ -20,6 +20,11 @@ void add_consensus(Document& document, Facts const& facts);
 /// The steady rates against the tolerance: part of the swarm's section.
 void add_tolerance(Document& document, Facts const& facts);
 void add_dead_zone(Document& document, Facts const& facts);
+void add_so3(Document& document, Facts const& facts);
+/// Orders, drift and surfaces: part of the section on SO(3).
+void add_so3_orders(Document& document, Facts const& facts);
+void add_classics(Document& document, Facts const& facts);
+void add_constrained(Document& document, Facts const& facts);
 void add_orders(Document& document, Facts const& facts);
 void add_failures(Document& document, Facts const& facts);
 void add_references(Document& document, Facts const& facts);

@@ -10,24 +10,6 @@ namespace fs = std::filesystem;
 using namespace samples;
 using results::Status;
 
-/// A run with a horizon of its own, and claims "name: value", all reproduced.
-Record run_of(std::string problem, std::string variant, Method const& m, double h, double t_end,
-              std::map<std::string, double> const& claims = {}) {
-  Record r = made(std::move(problem), std::move(variant), m, h);
-  r.of.t_end = t_end;
-  r.cell += fmt::format("/{}", t_end);
-  for (auto const& [name, value] : claims) r.claims[name] = {value, std::nullopt, "reproduced"};
-  return r;
-}
-
-Record adaptive(Record r, double rtol) {
-  r.of.h.reset();
-  r.of.rtol = rtol;
-  r.of.atol = 1e-6;
-  r.cell += fmt::format("/rtol {}", rtol);
-  return r;
-}
-
 /// A history of one column, at 0 s and at the end.
 Series history_with(Record const& r, std::string const& column, double first, double last) {
   return {r.cell, "history", {"t", column}, {"s", ""}, {{0, first}, {r.of.t_end, last}}};

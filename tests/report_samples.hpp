@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,24 @@ inline Record made(std::string problem, std::string variant, Method const& m, do
   r.reference_bar = bar;
   double const t = 2e-8 * static_cast<double>(*r.evaluations);
   r.cpu_time_s = results::CpuTime{t, 0.98 * t, 1.02 * t, 5};
+  return r;
+}
+
+/// A run with a horizon of its own, and claims "name: value", all reproduced.
+inline Record run_of(std::string problem, std::string variant, Method const& m, double h, double t_end,
+                     std::map<std::string, double> const& claims = {}) {
+  Record r = made(std::move(problem), std::move(variant), m, h);
+  r.of.t_end = t_end;
+  r.cell += fmt::format("/{}", t_end);
+  for (auto const& [name, value] : claims) r.claims[name] = {value, std::nullopt, "reproduced"};
+  return r;
+}
+
+inline Record adaptive(Record r, double rtol) {
+  r.of.h.reset();
+  r.of.rtol = rtol;
+  r.of.atol = 1e-6;
+  r.cell += fmt::format("/rtol {}", rtol);
   return r;
 }
 
