@@ -19,8 +19,8 @@
 
 namespace polhode {
 
-/// Directions that one evaluation differentiates in. Of 1, 4, 5, 7, 8 and 12, 4 took the least time on one body, where it
-/// makes two evaluations.
+/// Directions that one evaluation differentiates in. Of 1, 4, 5, 7, 8 and 12, 4 took the least time on one body, where
+/// it makes two evaluations.
 inline constexpr int jacobian_directions = 4;
 using JacobianScalar = Dual<jacobian_directions>;
 
