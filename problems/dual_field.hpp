@@ -151,7 +151,7 @@ class WithJacobian : public P {
       : P(problem), fresh_(std::move(problem)), duals_(std::move(duals)) {}
 
   bool has_jacobian() const { return true; }
-  void jacobian(double t, X const& x, std::span<double> J) const { duals_.jacobian(t, x, J); }
+  void jacobian(double t, X const& x, std::span<double> columns) const { duals_.jacobian(t, x, columns); }
 
   /// A new run: what both halves remember is forgotten.
   void begin() {
