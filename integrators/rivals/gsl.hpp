@@ -11,6 +11,7 @@
 
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <new>
 #include <vector>
 #endif
@@ -27,16 +28,25 @@ struct GslFree {
 template <class T>
 using GslOwned = std::unique_ptr<T, GslFree>;
 
-/// While it lives GSL returns its errors and does not abort. The handler is global: it is put back.
+/// While one of these lives GSL returns its errors and does not abort. The handler is global to all threads: the first
+/// switches it off, the last puts it back.
 class GslErrorsReturned {
  public:
-  GslErrorsReturned() : before_(gsl_set_error_handler_off()) {}
-  ~GslErrorsReturned() { gsl_set_error_handler(before_); }
+  GslErrorsReturned() {
+    std::lock_guard const lock(mutex);
+    if (living++ == 0) before = gsl_set_error_handler_off();
+  }
+  ~GslErrorsReturned() {
+    std::lock_guard const lock(mutex);
+    if (--living == 0) gsl_set_error_handler(before);
+  }
   GslErrorsReturned(GslErrorsReturned const&) = delete;
   GslErrorsReturned& operator=(GslErrorsReturned const&) = delete;
 
  private:
-  gsl_error_handler_t* before_;
+  inline static std::mutex mutex;
+  inline static int living = 0;
+  inline static gsl_error_handler_t* before = nullptr;
 };
 
 /// A problem as GSL's system: what GSL hands back to our callback stays where it is.
@@ -56,6 +66,7 @@ class GslSystem {
     (*static_cast<LibraryField<P> const*>(field))(t, y, dydt);
     return GSL_SUCCESS;
   }
+  GslErrorsReturned returned_;
   LibraryField<P> field_;
   gsl_odeiv2_system system_{evaluate, nullptr, size(), &field_};
 };
@@ -73,7 +84,6 @@ class GslFixed {
         error_(system_->size()),
         h_(control.h),
         policy_(policy) {
-    GslErrorsReturned const returned;
     stepper_.reset(gsl_odeiv2_step_alloc(type, system_->size()));
     if (!stepper_) throw std::bad_alloc();
   }
@@ -97,7 +107,6 @@ class GslFixed {
  private:
   template <class F>
   Status run(Point<M>& x, F take_steps) {
-    GslErrorsReturned const returned;
     store(x, y_.data());
     take_steps();
     load(x, y_.data());
@@ -134,7 +143,6 @@ class GslAdaptive {
         has_history_(has_history),
         first_step_(has_history ? std::sqrt(control.rtol + control.atol) : 0.01),
         policy_(policy) {
-    GslErrorsReturned const returned;
     driver_.reset(gsl_odeiv2_driver_alloc_y_new(system_->get(), type, first_step_, control.atol, control.rtol));
     if (!driver_) throw std::bad_alloc();
   }
@@ -148,7 +156,6 @@ class GslAdaptive {
   }
   /// x is read at a restart; between restarts a method with a history goes on from its own.
   Status step(Point<M>& x, double& t, double t_end) {
-    GslErrorsReturned const returned;
     gsl_odeiv2_driver& d = *driver_;
     store(x, y_.data());
     int const code = gsl_odeiv2_evolve_apply(d.e, d.c, d.s, system_->get(), &t, t_end, &d.h, y_.data());
