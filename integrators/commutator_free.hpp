@@ -13,7 +13,7 @@ namespace polhode {
 ///       | -1/12  0  3/4
 struct Cf3Tableau {
   static constexpr int stages = 3;
-  static constexpr bool keeps_second = true;
+  static constexpr bool keeps_second = true, one_slope_each = false;
   static constexpr Quad c[3] = {0, Quad(1) / 3, Quad(2) / 3};
   static constexpr ExponentialProduct<3, 1> product[3] = {
       {false, 1, {{{Quad(1) / 3}}}}, {false, 1, {{{0, Quad(2) / 3}}}}, {true, 1, {{{Quad(-1) / 12, 0, Quad(3) / 4}}}}};
@@ -28,7 +28,7 @@ struct Cf3Tableau {
 ///       | -1/12  1/6   1/6  1/4
 struct Cf4Tableau {
   static constexpr int stages = 4;
-  static constexpr bool keeps_second = true;
+  static constexpr bool keeps_second = true, one_slope_each = false;
   static constexpr Quad c[4] = {0, Quad(1) / 2, Quad(1) / 2, 1};
   static constexpr ExponentialProduct<4, 2> product[4] = {{false, 1, {{{Quad(1) / 2}}}},
                                                           {false, 1, {{{0, Quad(1) / 2}}}},

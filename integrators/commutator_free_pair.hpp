@@ -22,7 +22,7 @@ namespace polhode {
 ///       | -1/9   1/3    0     0   4/9
 struct Cf43Tableau {
   static constexpr int stages = 5, order = 4;
-  static constexpr bool keeps_second = true;
+  static constexpr bool keeps_second = true, one_slope_each = false;
   static constexpr Quad c[5] = {0, Quad(1) / 2, Quad(1) / 2, 1, Quad(3) / 4};
   static constexpr ExponentialProduct<5, 2> product[6] = {
       {false, 1, {{{Quad(1) / 2}}}},

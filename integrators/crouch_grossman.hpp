@@ -42,7 +42,7 @@ constexpr auto crouch_grossman_products(Quad const (&a)[n][n], Quad const (&b)[n
 ///         |  13/51    -2/3   24/17
 struct Cg3Tableau {
   static constexpr int stages = 3;
-  static constexpr bool keeps_second = false;
+  static constexpr bool keeps_second = false, one_slope_each = true;
   static constexpr Quad a[3][3] = {{}, {Quad(3) / 4}, {Quad(119) / 216, Quad(17) / 108}};
   static constexpr Quad b[3] = {Quad(13) / 51, Quad(-2) / 3, Quad(24) / 17};
   static constexpr Quad c[3] = {0, Quad(3) / 4, Quad(17) / 24};
@@ -53,7 +53,7 @@ struct Cg3Tableau {
 /// digits.
 struct Cg4Tableau {
   static constexpr int stages = 5;
-  static constexpr bool keeps_second = false;
+  static constexpr bool keeps_second = false, one_slope_each = true;
   static constexpr Quad a[5][5] = {
       {},
       {0.8177227988124851838643834157678926_quad},

@@ -24,9 +24,18 @@ struct ExponentialProduct {
   std::array<Combination<stages>, std::size_t(most)> factor;
 };
 
+/// The coefficients of a product whose j-th exponential is of k_j alone.
+template <class R, int stages, int most>
+constexpr std::array<R, std::size_t(most)> diagonal_of(ExponentialProduct<stages, most> const& product) {
+  std::array<R, std::size_t(most)> diagonal{};
+  for (std::size_t j = 0; j < std::size_t(most); ++j) diagonal[j] = R(product.factor[j][j]);
+  return diagonal;
+}
+
 /// A tableau T has stages, c and
 ///   product[i]      how the point of stage i + 2 is reached; product[stages - 1] is the step
 ///   keeps_second    a product starts from the second point
+///   one_slope_each  the j-th exponential of every product is of k_j alone
 template <class T>
 struct Exponentials {
   template <Problem P>
@@ -74,14 +83,24 @@ struct Exponentials {
     Point<M> const& from = product.from_second ? frame.second : x;
     for_each_body<M>(x, [&](auto const& at) POLHODE_LAMBDA {
       Point<Body> here = at(from);
-      unroll<product.count>([&](auto e) POLHODE_LAMBDA {
-        Chart<Body> u = Body::centre(here);
-        unroll<T::stages>([&](auto j) POLHODE_LAMBDA {
-          constexpr R a = R(product.factor[e][j]);
-          if constexpr (a != 0) add(u, R(a * h), at(frame.k[j]));
+      if constexpr (T::one_slope_each) {
+        // Many exponentials, all alike: a loop, which compiles sooner.
+        static constexpr auto coefficient = diagonal_of<R>(product);
+        for (std::size_t j = 0; j < std::size_t(product.count); ++j) {
+          Chart<Body> u = Body::centre(here);
+          add(u, R(coefficient[j] * h), at(frame.k[j]));
+          here = Body::retract(here, u);
+        }
+      } else {
+        unroll<product.count>([&](auto e) POLHODE_LAMBDA {
+          Chart<Body> u = Body::centre(here);
+          unroll<T::stages>([&](auto j) POLHODE_LAMBDA {
+            constexpr R a = R(product.factor[e][j]);
+            if constexpr (a != 0) add(u, R(a * h), at(frame.k[j]));
+          });
+          here = Body::retract(here, u);
         });
-        here = Body::retract(here, u);
-      });
+      }
       at(y) = here;
     });
   }

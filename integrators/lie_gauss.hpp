@@ -88,24 +88,22 @@ struct LieGauss {
             x,
             [&](auto& half, auto const& at) POLHODE_LAMBDA {
               add(half, at(memory.carry));
-              unroll<s>([&](auto j) POLHODE_LAMBDA { add(half, R(0.5), at(L[j])); });
+              for (Chart<M> const& one : L) add(half, R(0.5), at(one));
             },
             place, z);
         change = S(0.0);
-        unroll<s>([&](auto i) POLHODE_LAMBDA {
+        for (std::size_t i = 0; i < s; ++i) {  // not unrolled: that would take long to compile
           displace<M>(
               z,
               [&](auto& u, auto const& at) POLHODE_LAMBDA {
-                unroll<s>([&](auto j) POLHODE_LAMBDA {
-                  if constexpr (i != j) add(u, table.middle[i][j], at(L[j]));
-                });
+                for (std::size_t j = 0; j < s; ++j) add(u, table.middle[i][j], at(L[j]));
               },
               place, y);
           chart_slope(p, S(t + hc[i]), z, place, y, v, now);
           scale(now, hb[i]);
           change = max_of(change, distance<S>(now, L[i]));
           L[i] = now;
-        });
+        }
         ++memory.iterations;
         idle = change == S(0.0) ? 2 : change < least ? 0 : idle + 1;
         if (change < least) least = change;

@@ -7,7 +7,7 @@
 /// Source: Jorba & Zou (2005), Experimental Mathematics 14, 99 (coefficients, order and step size)
 #include <algorithm>
 #include <limits>
-#include <optional>
+#include <memory>
 #include <vector>
 
 #include "integrators/integrator.hpp"
@@ -36,7 +36,17 @@ class SolutionSeries {
         v_(shaped_like<Velocity<M>>(point_)),
         k_(shaped_like<Chart<M>>(point_)),
         x_(std::size_t(size_of(point_))),
-        rate_(x_.size()) {}
+        rate_(x_.size()),
+        memory_(std::make_unique<typename Series::Memory>()) {
+    memory_->pause();
+  }
+  /// Makes the room that grow() needs, so that it allocates nothing.
+  void prepare() {
+    store(point_, x_.data());
+    std::vector<R> start;
+    for (Series const& component : x_) start.push_back(component[0]);
+    grow(start.begin(), R(0.0), 2, [] { return false; });
+  }
 
   /// From the state at time t [s]; begin yields its components. Ends at `most` or when enough() says so, which is asked
   /// after each order.
@@ -44,10 +54,9 @@ class SolutionSeries {
   [[gnu::noinline]] void grow(Iterator begin, R const& t, int most, Enough const& enough) {
     for (Series& component : x_) component = Series(*begin++);
     Series time(t);
-    std::optional<typename Series::Memory> memory;  // from the first order on: constants are constants until then
     for (degree_ = 0; degree_ < most;) {
-      if (degree_ == 1) memory.emplace();
-      if (memory) memory->rewind();
+      if (degree_ == 1) memory_->resume();  // from the first order on: constants are constants until then
+      memory_->rewind();
       load(point_, x_.data());
       slope(*problem_, time, point_, v_, k_);
       store(k_, rate_.data());
@@ -60,6 +69,7 @@ class SolutionSeries {
       time[1] = R(1.0);
       if (enough()) break;
     }
+    memory_->pause();
   }
   int degree() const { return degree_; }
   /// Greatest coefficient of order k, over the components; not a number if one is.
@@ -87,6 +97,7 @@ class SolutionSeries {
   Velocity<M> v_;
   Chart<M> k_;
   std::vector<Series> x_, rate_;
+  std::unique_ptr<typename Series::Memory> memory_;
   int degree_ = 0;
 };
 
@@ -186,7 +197,9 @@ class TaylorStepper {
 
  public:
   TaylorStepper(P const& problem, Adaptive control, NormPolicy policy, int most)
-      : series_(problem.in_series()), control_(control), policy_(policy), most_(most) {}
+      : series_(problem.in_series()), control_(control), policy_(policy), most_(most) {
+    series_.prepare();
+  }
 
   Status advance(Point<M>& x, R t, R t_end) {
     while (t < t_end)
@@ -301,7 +314,9 @@ struct TaylorOfDegree {
 
   template <KnowsItsSeries P>
   auto bind(P const& p, FixedStep control, NormPolicy policy) const {
-    return Fixed<Method<P>, P>(Method<P>{SeriesOf<P>(p.in_series())}, p, control, policy);
+    SeriesOf<P> series(p.in_series());
+    series.prepare();
+    return Fixed<Method<P>, P>(Method<P>{std::move(series)}, p, control, policy);
   }
   template <KnowsItsSeries P>
   auto bind(P const& p, Adaptive control, NormPolicy policy) const {

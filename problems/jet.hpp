@@ -96,11 +96,20 @@ struct Jet {
    public:
     /// Jets of this thread remember from now on, until the end of this object; only one at a time.
     Memory() { current = this; }
-    ~Memory() { current = nullptr; }
+    ~Memory() {
+      if (current == this) current = nullptr;
+    }
     Memory(Memory const&) = delete;
     Memory& operator=(Memory const&) = delete;
     /// The same expressions follow once more.
     void rewind() { next_ = 0; }
+    /// Jets remember no longer, until resume(), which forgets what was but keeps the room.
+    void pause() { current = nullptr; }
+    void resume() {
+      current = this;
+      next_ = 0;
+      for (Jet& result : results_) result.degree = -1;
+    }
 
    private:
     friend Jet;

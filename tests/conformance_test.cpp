@@ -77,7 +77,9 @@ TEST(Catalogue, EveryMethodRunsOkOrIsRefusedWithAReason) {
     auto const record = cell.measured().record;
     EXPECT_EQ(record.status, results::Status::ok) << text_of(cell) << ": " << record.reason;
     EXPECT_GT(record.steps.value_or(0), 0) << text_of(cell);
-    EXPECT_GE(record.evaluations.value_or(0), record.steps.value_or(0)) << text_of(cell);
+    std::string const needs = vocabulary().integrator(cell.cell.integrator).needs;
+    if (needs != "free_body" && needs != "rigid_body")  // what moves a free body exactly never asks for its field
+      EXPECT_GE(record.evaluations.value_or(0), record.steps.value_or(0)) << text_of(cell);
     ++ran;
   }
   EXPECT_GT(ran, 100);

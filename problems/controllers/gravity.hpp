@@ -10,6 +10,7 @@ template <Scalar S>
 struct GravityTorque {
   using Scalar = S;
   static constexpr bool sampled = false;
+  static constexpr bool feels_rate = false;
 
   Vec3<S> moment;
   Vec3<S> gravity;
