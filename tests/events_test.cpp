@@ -1,6 +1,7 @@
 /// State events: found where they are, together if they come together, and with the order that they give back.
 #include <gtest/gtest.h>
 
+#include "integrators/runge_kutta.hpp"
 #include "tests/runs.hpp"
 
 namespace polhode {

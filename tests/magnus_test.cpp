@@ -71,7 +71,7 @@ TEST(Coning, ShowsItsDistanceFromTheClosedForm) {
 template <class S, template <class> class A>
 struct Gyros {
   using Space = A<S>;
-  static constexpr bool prescribed_rates = true;
+  static constexpr bool prescribed_rates() { return true; }
   Vec3<S> operator()(S const& t, Point<Space> const&) const {
     S const two(2.0), three(3.0);
     return {S(0.7) + sin(two * t), cos(three * t) - t, sin(t) + S(0.3) * t * t};
@@ -145,7 +145,7 @@ TEST(Magnus, OfOrder4ByHand) {
 /// A steady turn.
 struct Steady {
   using Space = S3<double>;
-  static constexpr bool prescribed_rates = true;
+  static constexpr bool prescribed_rates() { return true; }
   Vec3<double> operator()(double, Quat<double> const&) const { return {0.3, -0.5, 0.2}; }
   Quat<double> initial() const { return {0, 0, 0, 1}; }
 };
@@ -179,7 +179,7 @@ TEST(Magnus, KeepsTheConstraintOverTenThousandSteps) {
 /// The same gyros on three bodies.
 struct ThreeGyros {
   using Space = Attitudes<S3<double>>;
-  static constexpr bool prescribed_rates = true;
+  static constexpr bool prescribed_rates() { return true; }
   void operator()(double t, Point<Space> const& x, Velocity<Space>& v) const {
     for (int i = 0; i < 3; ++i) v[i] = (1. + i) * Gyros<double, S3>{}(t, x[i]);
   }

@@ -1,0 +1,91 @@
+/// Gauss where the fixed point diverges: Newton takes over, the order stays.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "integrators/gauss.hpp"
+#include "problems/erased.hpp"
+#include "problems/pd_slew.hpp"
+#include "tests/random_numbers.hpp"
+
+namespace polhode {
+namespace {
+
+/// The slew of a body so light that its rate settles at 20 to 40 1/s.
+PdSlew light_slew() {
+  Choice choice;
+  choice.set["inertia"] = {0.5, 0.85, 1};
+  return PdSlew(choice);
+}
+Quat<Quad> const& reference() {
+  static Quat<Quad> const q = [] {
+    auto const field = light_slew().field<Quad, S3, true>();
+    auto x = field.initial();
+    EXPECT_EQ(Gauss<8>{}.bind(field, FixedStep{1.0 / 64}, NormPolicy::none).advance(x, 0, 2), Status::ok);
+    return x.first;
+  }();
+  return q;
+}
+template <template <class> class A, class Control>
+double error_of(int stages, Control const& control) {
+  auto const field = light_slew().field<double, A, true>();
+  auto x = field.initial();
+  EXPECT_EQ(GaussOf{stages}.bind(field, control, NormPolicy::none).advance(x, 0, 2), Status::ok) << stages;
+  return double(angle_between(test::in<Quad>(A<double>::attitude(x.first)), reference()));
+}
+
+TEST(GaussNewton, RunsWhereTheFixedPointDiverges) {
+  for (int stages = 1; stages <= 8; ++stages)
+    for (double h : {0.5, 0.25, 0.125}) {
+      EXPECT_LT(error_of<FlatQuaternion>(stages, FixedStep{h}), stages == 1 ? 5e-3 : 2e-4) << stages << ", h = " << h;
+      EXPECT_LT(error_of<S3>(stages, FixedStep{h}), stages == 1 ? 5e-3 : 2e-4) << stages << ", h = " << h;
+    }
+}
+
+TEST(GaussNewton, KeepsTheOrder) {
+  for (int stages = 1; stages <= 4; ++stages) {
+    double const h = stages < 3 ? 1.0 / 128 : 1.0 / 32;
+    double const slope =
+        std::log2(error_of<FlatQuaternion>(stages, FixedStep{h}) / error_of<FlatQuaternion>(stages, FixedStep{h / 2}));
+    EXPECT_NEAR(slope, 2 * stages, 0.4) << stages;
+  }
+}
+
+TEST(GaussNewton, ServesAdaptiveSteps) {
+  for (int stages : {2, 4, 6}) EXPECT_LT(error_of<FlatQuaternion>(stages, Adaptive{1e-8, 1e-10}), 1e-7) << stages;
+}
+
+TEST(GaussNewton, SolvesTheSameEquationsInQuadruplePrecision) {
+  auto const field = light_slew().field<Quad, FlatQuaternion, true>();
+  auto x = field.initial(), back = x;
+  EXPECT_EQ(Gauss<3>{}.bind(field, FixedStep{0.125}, NormPolicy::none).advance(x, 0, 0.5), Status::ok);
+  back = x;
+  EXPECT_EQ(Gauss<3>{}.bind(field, FixedStep{-0.125}, NormPolicy::none).advance(back, 0.5, 0), Status::ok);
+  EXPECT_LT(double(distance<Quad>(back, field.initial())), 1e-24) << "symmetric only as far as stages are solved";
+}
+
+/// The rate wants to jump by more than any step: there is no solution to find.
+struct Jumping {
+  using Space = Euclidean3<double>;
+  Vec3<double> operator()(double, Vec3<double> const& x) const { return {x.x < 1 ? 100.0 : -100.0, 0, 0}; }
+  Vec3<double> initial() const { return {0, 0, 0}; }
+};
+
+TEST(GaussNewton, SaysSoWhereThereIsNoSolution) {
+  Jumping const problem;
+  auto x = problem.initial();
+  EXPECT_EQ(Gauss<1>{}.bind(problem, FixedStep{0.1}, NormPolicy::none).advance(x, 0, 1), Status::nonlinear_fail);
+}
+
+TEST(GaussNewton, IsLeftAloneWhereTheFixedPointServes) {
+  auto const field = PdSlew(Choice{}).field<double, FlatQuaternion, true>();
+  GaussMethod<RigidBody<FlatQuaternion<double>>> method(3, {});
+  GaussMemory<RigidBody<FlatQuaternion<double>>> memory;
+  auto x = field.initial();
+  for (int i = 0; i < 1000; ++i) method.step(field, 0.1 * i, 0.1, x, memory, false);
+  EXPECT_EQ(memory.jacobians, 0);
+  EXPECT_FALSE(memory.unconverged);
+}
+
+}  // namespace
+}  // namespace polhode
