@@ -141,6 +141,7 @@ struct GaussCanonical {
       .name = names[s - 1],
       .family = Family::gauss,
       .order = 2 * s,
+      .needs = Needs::rigid_body,
       .preserves = keeps_norm | keeps_momentum | keeps_momentum_direction | is_symplectic | is_symmetric,
       .source = "Hairer, Lubich & Wanner, VI.4, VII.5",
       .pitfall = "energy oscillates; only for one rigid body of known inertia"};
