@@ -115,12 +115,18 @@ Cost const* first(std::vector<Cost> const& ranking, bool rival) {
   return found == ranking.end() ? nullptr : &*found;
 }
 
+/// At the target, or at most that where nothing brackets it.
+Entry cost_of(Cost const& cost, Measure measure) {
+  std::string const value = measure == Measure::time ? duration(cost.value) : significant(cost.value, 4);
+  return {cost.interpolated ? value : "≤ " + value, exact(cost.value)};
+}
+
 void add_methods(Document& document, Facts const& facts) {
   Table table{.name = "classics-methods",
               .caption =
                   "Which method for which problem: the cheapest of ours and of the rivals to an attitude error, "
                   "by evaluations of the field, or by CPU time where runs were timed; interpolated as in the "
-                  "section on work and precision.",
+                  "section on work and precision, ≤ where nothing brackets the target.",
               .columns = {{"problem"},
                           {"target [rad]", true},
                           {"ours"},
@@ -143,9 +149,7 @@ void add_methods(Document& document, Facts const& facts) {
       for (Cost const* cost : {own, rival}) {
         row.emplace_back(cost ? method_of(cost->run->of) : absent);
         row.emplace_back(cost ? control_of(cost->run->of) : absent);
-        row.push_back(!cost                      ? Entry(absent)
-                      : measure == Measure::time ? Entry(duration(cost->value), exact(cost->value))
-                                                 : number(cost->value, 4));
+        row.push_back(cost ? cost_of(*cost, measure) : Entry(absent));
       }
       row.push_back(own && rival ? number(rival->value / own->value) : Entry(absent));
       table.rows.push_back(std::move(row));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "report/located.hpp"
 #include "report/sections.hpp"
@@ -143,6 +144,26 @@ void say_level(Document& document, std::vector<Sweep> const& sweeps, ErrorKind c
   document.say(fmt::format("{}: {}.", level, text));
 }
 
+/// Runs with one step that hold the constraint, and yet differ in attitude.
+void say_attitudes(Document& document, std::vector<Sweep> const& sweeps) {
+  std::map<double, std::vector<Record const*>> by_step;
+  for (Sweep const& sweep : sweeps) {
+    for (Record const* run : sweep.runs) {
+      bool const held = finite(run->position_defect_max).value_or(INFINITY) <= round_off;
+      if (is_ok(*run) && held && run->of.h && finite(run->attitude_error_end)) by_step[*run->of.h].push_back(run);
+    }
+  }
+  std::erase_if(by_step, [](auto const& item) { return item.second.size() < 2; });
+  if (by_step.empty()) return;
+  auto const& [h, runs] = *by_step.begin();
+  auto const [least, most] = std::ranges::minmax_element(runs, {}, [](auto* run) { return *run->attitude_error_end; });
+  document.say(
+      fmt::format("A constraint that is held is no accuracy: at h = {} s the attitude errors of methods that hold Phi "
+                  "at round-off reach from {} rad ({}) to {} rad ({}).",
+                  significant(h, 4), significant(*(*least)->attitude_error_end, 2), (*least)->of.integrator,
+                  significant(*(*most)->attitude_error_end, 2), (*most)->of.integrator));
+}
+
 Table defect_table(std::vector<Sweep> const& sweeps) {
   Table table{.name = "constrained-defects",
               .caption =
@@ -194,6 +215,7 @@ void add_order_table(Document& document, Facts const& facts) {
   auto sweeps = fixed_sweeps(facts, is_constrained);
   std::ranges::stable_sort(sweeps, {}, [](Sweep const& s) { return !sees_constraint(s.like().integrator); });
   for (Sweep const& sweep : sweeps) {
+    if (sweep.runs.size() < 2) continue;
     std::vector<Entry> row{sweep.like().integrator, sweep.like().formulation};
     for (ErrorKind const& kind : kinds) {
       auto const order = order_of(sweep, INFINITY, kind);
@@ -277,6 +299,7 @@ void add_constrained(Document& document, Facts const& facts) {
   say_level(document, sweeps, velocity, "Velocities, |dPhi/dt| in m/s");
   say_level(document, sweeps, acceleration, "Accelerations, |d2Phi/dt2| in m/s^2");
   say_level(document, sweeps, multiplier, "The multiplier, relative error");
+  say_attitudes(document, sweeps);
   add_figures(document, facts, sweeps);
   document.add(defect_table(sweeps));
   add_order_table(document, facts);
