@@ -4,17 +4,9 @@
 namespace polhode {
 namespace {
 
-using test::a_cell;
+using test::brisk_slew;
 using test::OrderPoint;
-using test::OrderProblem;
 using test::slope_of;
-
-/// Stiffer and faster than by default, with the scalar part above .7 throughout: there a method of order 5 shows its
-/// order before double precision ends. On the default slew its errors fall by order 6 until round-off.
-OrderProblem const& brisk_slew() {
-  static OrderProblem const problem(a_cell("pd_slew", "s3", "cf4").set("k_p", {100}).set("omega0", {-0.6, -0.9, 0.3}));
-  return problem;
-}
 
 TEST(Order, OfEveryRivalWithFixedSteps) {
   int checked = 0;

