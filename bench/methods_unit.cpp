@@ -26,6 +26,8 @@ Outcome solve(Erased<M>& problem, Plan const& plan, Watch<M>& watch) {
     outcome.work.rejected += outcome.located.trials;
     outcome.projections = stepper.projections();
     outcome.evaluations = problem.evaluations() + outcome.work.evaluations;
+    if constexpr (requires { problem.series(); })
+      if (SeriesTwin const* series = problem.series()) outcome.evaluations += series->evaluations();
     return outcome;
   });
 }

@@ -3,6 +3,7 @@
 /// problems/catalog.hpp. POLHODE_RACED says that it has races.
 #include "bench/problems.hpp"
 #include "problems/dual_field.hpp"
+#include "problems/series_twin.hpp"
 #include POLHODE_PROBLEM_HEADER
 
 namespace polhode::bench {
@@ -73,7 +74,9 @@ class Chosen final : public ChosenProblem {
   Any erased() const {
     std::optional<Any> any;
     auto const keep = [&]<class P>(P field) {
-      if constexpr (std::constructible_from<Any, std::unique_ptr<Erased<typename P::Space>>>)
+      if constexpr (std::same_as<typename P::Space, RigidBody<FlatQuaternion<double>>>)
+        any.emplace(erase_type(WithSeriesTwin<P>(std::move(field), erased_on<SeriesTwin::Space, A>(definition_))));
+      else if constexpr (std::constructible_from<Any, std::unique_ptr<Erased<typename P::Space>>>)
         any.emplace(erase_type(std::move(field)));
     };
     with_field<S, A>(definition_, [&]<class P>(P field) {

@@ -48,6 +48,7 @@ enum class Family { explicit_rk, gauss, lie_group, rigid_body, splitting, exact,
 enum class Needs {
   none,
   flat,
+  quaternion,  ///< one body on flat quaternions
   group,
   free_body,         ///< a rigid body without torque
   rigid_body,        ///< a rigid body whose inertia is known
@@ -137,6 +138,8 @@ constexpr std::string_view refusal(Needs needs) {
     if (!is_attitudes<M>) return "needs an attitude under prescribed rates (problem coning)";
     return refusal<M>(Needs::group);
   }
+  if (needs == Needs::quaternion && !std::same_as<M, RigidBody<FlatQuaternion<typename M::Scalar>>>)
+    return "needs one body on flat quaternions (formulation quaternion)";
   if (needs == Needs::flat && !M::flat) return "needs flat coordinates";
   if (needs == Needs::group && M::flat) return "needs a rotation group (formulation s3 or so3)";
   return "";

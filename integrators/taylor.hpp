@@ -327,7 +327,7 @@ struct Taylor : TaylorOfDegree<20> {
   static constexpr MethodInfo info{.name = "taylor",
                                    .family = Family::taylor,
                                    .order = 20,
-                                   .needs = Needs::flat,
+                                   .needs = Needs::quaternion,
                                    .source = "Jorba & Zou (2005), Experimental Mathematics 14, 99",
                                    .pitfall = "a kink of the field within a step is not seen"};
 };

@@ -202,9 +202,9 @@ struct SpaceOver<Power<M, n>, T> {
   using type = Power<typename SpaceOver<M, T>::type, n>;
 };
 
-/// The field as chosen over dual numbers, on the space M, its type forgotten.
+/// The field as chosen on the space M, over dual numbers or series, its type forgotten.
 template <Space M, template <class> class A, Definition D>
-std::unique_ptr<Erased<M>> erased_duals(D const& definition) {
+std::unique_ptr<Erased<M>> erased_on(D const& definition) {
   std::unique_ptr<Erased<M>> erased;
   with_field<typename M::Scalar, A>(definition, [&](auto field) {
     if constexpr (std::same_as<typename decltype(field)::Space, M>) erased = erase_type(std::move(field));
@@ -218,7 +218,7 @@ void with_differentiable_field(D const& definition, F f) {
     using P = decltype(field);
     if constexpr (FlatSpace<typename P::Space>) {
       using Duals = typename SpaceOver<typename P::Space, JacobianScalar>::type;
-      f(WithJacobian<P, Erased<Duals>>(std::move(field), erased_duals<Duals, A>(definition)));
+      f(WithJacobian<P, Erased<Duals>>(std::move(field), erased_on<Duals, A>(definition)));
     } else {
       f(std::move(field));
     }

@@ -8,10 +8,16 @@
 #include <span>
 #include <vector>
 
+#include "problems/jet.hpp"
 #include "problems/pinned_body.hpp"
 #include "problems/problem.hpp"
 
 namespace polhode {
+
+template <Space M>
+class Erased;
+/// A body on power series of the degree that the method `taylor` takes.
+using SeriesTwin = Erased<RigidBody<FlatQuaternion<Jet<double, 20>>>>;
 
 /// What the problems of one space show beside what all have: nothing,
 template <class M>
@@ -27,6 +33,9 @@ class ErasedExtras<RigidBody<A>> {
   virtual Mat3<Real<S>> inertia_matrix() const = 0;  ///< [kg m^2, body]
   virtual bool torque_free() const = 0;
   virtual bool torque_feels_rate() const = 0;
+  /// The same problem on power series; null if it is not known.
+  virtual SeriesTwin const* series() const = 0;
+  SeriesTwin const& in_series() const requires std::same_as<A, FlatQuaternion<double>> { return *series(); }
   /// [N m, body]; counts as an evaluation.
   virtual Vec3<S> torque(S const& t, Point<RigidBody<A>> const& x) const = 0;
 
@@ -125,6 +134,12 @@ class Erasing<P, RigidBody<A>> : public Erased<RigidBody<A>> {
       return problem_.inertia_matrix();
     else
       return {};
+  }
+  SeriesTwin const* series() const override {
+    if constexpr (requires { problem_.series(); })
+      return problem_.series();
+    else
+      return nullptr;
   }
   bool torque_free() const override {
     if constexpr (rigid)
