@@ -1,6 +1,7 @@
 /// Nothing is allocated once a method is bound: every own method on every formulation of every problem, fully typed.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <new>
 
 #include "bench/allocations.hpp"
@@ -29,7 +30,7 @@ TEST(Allocations, NoneInAnyAdvance) {
           if (fixed ? !method.fixed : !method.adaptive) continue;
           auto cell = test::a_cell(problem.name, formulation, method.name)
                           .of_variant(test::calm_variant(problem.name))
-                          .until(2);
+                          .until(std::min(2.0, 500 * problem.step));
           cell = fixed ? cell.with_h(problem.step) : cell.with_rtol(1e-8);
           auto const prepared = bench::prepare(cell.cell);
           if (!prepared.refusal.empty()) continue;

@@ -20,7 +20,8 @@ std::vector<std::string> choices_of(ProblemWord const& problem) {
   std::vector<std::string> choices{test::calm_variant(problem.name)};
   for (auto const& group : problem.variants)
     for (std::string const& word : group)
-      if (!word.empty() && bench::problem_named(problem.name).choose({.words = {word}, .set = {}})->pinned())
+      if (!word.empty() &&
+          bench::problem_named(problem.name).choose({.words = {word}, .set = {}, .step = problem.step})->pinned())
         choices.push_back(word);
   return choices;
 }

@@ -14,7 +14,7 @@ using test::CellUnderTest;
 std::vector<std::string> adaptive_rivals() {
   std::vector<std::string> names;
   for (bench::IntegratorWord const& word : bench::vocabulary().integrators)
-    if (word.rival && word.adaptive && word.not_built.empty()) names.push_back(word.name);
+    if (word.rival && word.adaptive && word.needs == "flat" && word.not_built.empty()) names.push_back(word.name);
   return names;
 }
 std::string name_of(testing::TestParamInfo<std::string> const& info) {
