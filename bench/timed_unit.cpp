@@ -3,6 +3,7 @@
 /// problem would run. Foils among the formulations are not raced: they are compiled for erased problems alone.
 #include "bench/problems.hpp"
 #include "bench/timed_solve.hpp"
+#include "problems/dual_field.hpp"
 #include POLHODE_PROBLEM_HEADER
 #include POLHODE_METHODS_HEADER
 
@@ -15,10 +16,17 @@ using Methods = POLHODE_METHODS;
 template <class F, class Method>
 std::unique_ptr<TimedSolve> timed_on(D const& definition, Plan const& plan) {
   using P = decltype(definition.template field<double, F::template On, true>());
-  if constexpr (refusal<typename P::Space>(Method::info.needs).empty() && Method::info.not_built.empty())
-    return timed_solve_of<Method, P>(definition.template field<double, F::template On, true>(), plan);
-  else
+  if constexpr (!refusal<typename P::Space>(Method::info.needs).empty() || !Method::info.not_built.empty()) {
     return nullptr;
+  } else if constexpr (requires { requires Method::uses_jacobian; }) {
+    using Duals = decltype(definition.template field<JacobianScalar, F::template On, true>());
+    using Both = WithJacobian<P, Duals>;
+    return timed_solve_of<Method, Both>(Both(definition.template field<double, F::template On, true>(),
+                                             definition.template field<JacobianScalar, F::template On, true>()),
+                                        plan);
+  } else {
+    return timed_solve_of<Method, P>(definition.template field<double, F::template On, true>(), plan);
+  }
 }
 
 template <class F, class... Method>
