@@ -116,7 +116,9 @@ void expect_order(D const& definition, OrderProblem const& problem, std::string_
   });
   ASSERT_GE(points.size(), 3u) << info.name << " as " << formulation << ": no order to see";
   points.erase(points.begin(), points.end() - 3);
-  EXPECT_NEAR(slope_of(points), info.order, info.order <= 5 ? 0.1 : 0.2)
+  // Above 12 quadruple precision ends after less than a decade of steps.
+  double const within = info.order <= 5 ? 0.1 : info.order <= 12 ? 0.2 : 0.5;
+  EXPECT_NEAR(slope_of(points), info.order, within)
       << info.name << " on " << problem.cell.cell.problem << " as " << formulation;
 }
 
