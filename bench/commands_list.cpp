@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -17,7 +18,12 @@ nlohmann::ordered_json to_json(IntegratorWord const& word) {
   json["adaptive_only"] = word.adaptive && !word.fixed;
   json["rival"] = word.rival;
   json["preserves"] = word.preserves;
-  json["needs"] = word.needs;
+  // Of the space; what is needed of the problem itself stands apart.
+  static std::map<std::string, std::string> const of_the_space{
+      {"rigid_body", "none"}, {"prescribed_rates", "group"}, {"constraint", "none"}};
+  auto const found = of_the_space.find(word.needs);
+  json["needs"] = found == of_the_space.end() ? word.needs : found->second;
+  json["needs_problem"] = found == of_the_space.end() ? nlohmann::ordered_json() : word.needs;
   json["source"] = word.source;
   json["pitfall"] = word.pitfall;
   if (!word.not_built.empty()) json["not_built"] = word.not_built;

@@ -76,6 +76,10 @@ TEST(CliList, IntegratorsAsJson) {
   EXPECT_EQ(by_name.at("gauss3").at("order"), 6);
   EXPECT_EQ(by_name.at("gauss2_tol6").at("order"), nullptr);  // a foil
   EXPECT_EQ(by_name.at("cf4").at("needs"), "group");
+  EXPECT_EQ(by_name.at("cf4").at("needs_problem"), nullptr);
+  EXPECT_EQ(by_name.at("split_strang").at("needs_problem"), "rigid_body");
+  EXPECT_EQ(by_name.at("rattle").at("needs_problem"), "constraint");
+  EXPECT_EQ(by_name.at("magnus4").at("needs_problem"), "prescribed_rates");
   EXPECT_EQ(by_name.at("cvode_bdf").at("order"), nullptr);
   EXPECT_TRUE(by_name.at("cvode_bdf").at("adaptive_only"));
   EXPECT_TRUE(by_name.at("cvode_bdf").at("rival"));
