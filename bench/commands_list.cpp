@@ -23,7 +23,8 @@ nlohmann::ordered_json to_json(IntegratorWord const& word) {
       {"rigid_body", "none"}, {"prescribed_rates", "group"}, {"constraint", "none"}};
   auto const found = of_the_space.find(word.needs);
   json["needs"] = found == of_the_space.end() ? word.needs : found->second;
-  json["needs_problem"] = found == of_the_space.end() ? nlohmann::ordered_json() : word.needs;
+  json["needs_problem"] = nullptr;
+  if (found != of_the_space.end()) json["needs_problem"] = word.needs;
   json["source"] = word.source;
   json["pitfall"] = word.pitfall;
   if (!word.not_built.empty()) json["not_built"] = word.not_built;
