@@ -124,7 +124,7 @@ POLHODE_INLINE S polynomial(S const& z, C... c) {
 template <class S>
 POLHODE_INLINE SincCos<S> sinc_cos(S const& z) {
   if constexpr (short_series<S>)
-    if (z < S(0.04)) [[likely]] {
+    if (all_of(z < S(0.04))) [[likely]] {
       return {polynomial(z, -1. / 39916800, 1. / 362880, -1. / 5040, 1. / 120, -1. / 6, 1.),
               polynomial(z, -1. / 3628800, 1. / 40320, -1. / 720, 1. / 24, -.5, 1.)};
     }
@@ -163,7 +163,7 @@ POLHODE_INLINE Vec3<S> dexpinv(Vec3<S> const& u, Vec3<S> const& omega) {
   Vec3<S> const uw = cross(u, omega);
   S c(0.0);
   bool near = false;
-  if constexpr (short_series<S>) near = z < S(0.16);
+  if constexpr (short_series<S>) near = all_of(z < S(0.16));
   if (near) [[likely]]
     c = polynomial(z, 691. / 1307674368000., 1. / 47900160, 1. / 1209600, 1. / 30240, 1. / 720, 1. / 12);
   else

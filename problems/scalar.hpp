@@ -3,6 +3,7 @@
 ///   double     one trajectory
 ///   Quad       references, 33 digits
 ///   Dual, Jet  derivatives and power series: dual.hpp, jet.hpp
+///   Lanes      several doubles at once: lanes.hpp
 /// A problem is a template on its scalar, so the same source runs as each of them.
 #include <quadmath.h>
 
@@ -126,6 +127,10 @@ S nearest_whole(S const& x) {
     return S(floor(x.value + Real<S>(0.5)));
   else
     return S(floor(x[0] + Real<S>(0.5)));
+}
+/// True everywhere: of a plain number, its truth; of lanes (lanes.hpp), that of all.
+POLHODE_INLINE constexpr bool all_of(bool truth) {
+  return truth;
 }
 /// Neither infinite nor NaN.
 template <class S>

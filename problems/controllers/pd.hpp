@@ -17,7 +17,7 @@ struct PdController {
   Real<S> k_p, k_d;
 
   POLHODE_INLINE Vec3<S> torque(S const&, Quat<S> const& q, Vec3<S> const& omega) const {
-    Real<S> const towards = q.w < S(0.0) ? k_p : -k_p;
+    auto const towards = select(q.w < S(0.0), k_p, -k_p);
     return towards * vec(q) - k_d * omega;
   }
 };
