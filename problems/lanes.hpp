@@ -125,6 +125,10 @@ struct Lanes {
   friend POLHODE_INLINE Lanes operator*(Lanes const& a, Lanes const& b) {
     return detail::by_parts<Lanes>([](auto& r, auto const& x, auto const& y) POLHODE_LAMBDA { r = x * y; }, a, b);
   }
+  /// Broadcast in the product itself: a kernel for another instruction set than its unit's would do it lane by lane.
+  friend POLHODE_INLINE Lanes operator*(T const& c, Lanes const& b) {
+    return detail::by_parts<Lanes>([&](auto& r, auto const& y) POLHODE_LAMBDA { r = c * y; }, b);
+  }
   friend POLHODE_INLINE Lanes operator/(Lanes const& a, Lanes const& b) {
     return detail::by_parts<Lanes>([](auto& r, auto const& x, auto const& y) POLHODE_LAMBDA { r = x / y; }, a, b);
   }
