@@ -1,20 +1,24 @@
 #pragma once
 /// The run loop: from event to event. The samples of a digital controller, announced jumps of the field and output
-/// times are stops: every method lands on them. Between stops a method is on its own, except where the field switches
-/// with the state and the method can be told where, and where points are replaced by equivalent ones.
+/// times are stops: every method lands on them, but for outputs of methods with dense output, which look back into
+/// their steps. Between stops a method is on its own, except where the field switches with the state and the method can
+/// be told where, and where points are replaced by equivalent ones.
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "integrators/events.hpp"
 
 namespace polhode::bench {
 
-/// A time [s] that every method lands on, and what happens there.
+/// A time [s] of a run, and what happens there.
 struct Stop {
   double time = 0;
   bool sample = false;  ///< the controller is asked; methods restart
   bool jump = false;    ///< the field is not smooth here; methods restart
   bool output = false;  ///< the state is wanted
+
+  bool restarts() const { return sample || jump; }
 };
 
 /// What decides the stops of a run.
@@ -51,6 +55,7 @@ class RunLoop {
   using R = Real<typename M::Scalar>;
   static constexpr bool chooses_steps = requires(Stepper s, Point<M> x, R t) { s.step(x, t, t); };
   static constexpr bool finds_roots = requires(Stepper s) { s.find_roots(); };
+  static constexpr bool looks_back = requires(Stepper s, Point<M> x, R t) { s.interpolate(t, x); };
 
  public:
   RunLoop(P& problem, Stepper& stepper, double h, bool locate) : problem_(problem), stepper_(stepper), h_(h) {
@@ -65,20 +70,24 @@ class RunLoop {
   /// x is then the last state that was reached.
   template <class Watch>
   Status go(Point<M>& x, std::vector<Stop> const& stops, Watch&& watch) {
-    for (std::size_t k = 0; k < stops.size(); ++k) {
+    for (std::size_t k = 0; k < stops.size();) {
       Stop const& here = stops[k];
       R const now(here.time);
       if constexpr (requires { problem_.sample(now, x); })
         if (here.sample) problem_.sample(now, x);
       if constexpr (requires { problem_.enter_phase(now); })
         if (here.jump) problem_.enter_phase(now);
-      if (here.sample || here.jump) stepper_.restart();
+      if (here.restarts()) stepper_.restart();
       if constexpr (requires { stepper_.set_horizon(now, now); })
-        if (k == 0 || here.sample || here.jump) stepper_.set_horizon(now, R(arc_end(stops, k)));
-      if (locator_ && (k == 0 || here.sample || here.jump)) take_sides(now, x);
+        if (k == 0 || here.restarts()) stepper_.set_horizon(now, R(stops[arc_end(stops, k)].time));
+      if (locator_ && (k == 0 || here.restarts())) take_sides(now, x);
       watch.at_stop(here, x);
       if (k + 1 == stops.size()) break;
-      if (Status const status = between(x, now, R(stops[k + 1].time), watch); status != Status::ok) return status;
+      std::size_t const next = looks_back && !locator_ ? arc_end(stops, k) : k + 1;
+      std::span const outputs(stops.data() + k + 1, next - k - 1);
+      if (Status const status = between(x, now, R(stops[next].time), outputs, watch); status != Status::ok)
+        return status;
+      k = next;
     }
     return Status::ok;
   }
@@ -87,16 +96,17 @@ class RunLoop {
   }
 
  private:
-  /// Where the smooth arc that begins at stop k ends [s].
-  static double arc_end(std::vector<Stop> const& stops, std::size_t k) {
+  /// The stop where the smooth arc that begins at stop k ends.
+  static std::size_t arc_end(std::vector<Stop> const& stops, std::size_t k) {
     for (++k; k + 1 < stops.size(); ++k)
-      if (stops[k].sample || stops[k].jump) break;
-    return stops[std::min(k, stops.size() - 1)].time;
+      if (stops[k].restarts()) break;
+    return std::min(k, stops.size() - 1);
   }
+  /// From stop to stop; the outputs between them are for steppers that look back.
   template <class Watch>
-  Status between(Point<M>& x, R const& from, R const& to, Watch&& watch) {
+  Status between(Point<M>& x, R const& from, R const& to, std::span<Stop const> outputs, Watch&& watch) {
     if constexpr (!std::decay_t<Watch>::each_step && !Settling<M>)
-      if (!locator_) return stepper_.advance(x, from, to);
+      if (!locator_ && outputs.empty()) return stepper_.advance(x, from, to);
     R t = from;
     bool on_grid = true;
     for (std::int64_t i = 1; t < to;) {
@@ -115,6 +125,13 @@ class RunLoop {
         if (Status const status = locate(t, x, crossed); status != Status::ok) return status;
       if (!crossed) ++i;
       on_grid = !crossed;
+      if constexpr (looks_back)
+        for (; !outputs.empty() && !(t < R(outputs.front().time)); outputs = outputs.subspan(1)) {
+          Point<M> inside = x;
+          stepper_.interpolate(R(outputs.front().time), inside);
+          if constexpr (Settling<M>) M::settle(inside);
+          watch.at_stop(outputs.front(), inside);
+        }
       if constexpr (requires { watch.multiplier(stepper_.multiplier()); }) watch.multiplier(stepper_.multiplier());
       if constexpr (std::decay_t<Watch>::each_step) watch.after_step(t, x, stepper_.projections());
       if constexpr (Singular<M> && std::decay_t<Watch>::each_step)
