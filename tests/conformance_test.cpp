@@ -15,21 +15,11 @@ using bench::vocabulary;
 using test::a_cell;
 using test::CellUnderTest;
 
-/// The choices on which every method is tried: the problem's calm one, and those under a constraint.
-std::vector<std::string> choices_of(ProblemWord const& problem) {
-  std::vector<std::string> choices{test::calm_variant(problem.name)};
-  for (auto const& group : problem.variants)
-    for (std::string const& word : group)
-      if (!word.empty() &&
-          bench::problem_named(problem.name).choose({.words = {word}, .set = {}, .step = problem.step})->pinned())
-        choices.push_back(word);
-  return choices;
-}
 /// Every cell that can be asked for: problem, formulation, integrator, fixed or adaptive, policy. A short horizon.
 std::vector<CellUnderTest> every_combination() {
   std::vector<CellUnderTest> cells;
   for (ProblemWord const& problem : vocabulary().problems)
-    for (std::string const& variant : choices_of(problem))
+    for (std::string const& variant : test::calm_choices(problem))
       for (std::string const& formulation : problem.formulations)
         for (IntegratorWord const& method : vocabulary().integrators)
           for (std::string const& policy : vocabulary().policies) {
@@ -49,7 +39,7 @@ std::string text_of(CellUnderTest const& it) {
 template <class F>
 void for_each_method_on_every_space(F f) {
   for (ProblemWord const& problem : vocabulary().problems)
-    for (std::string const& variant : choices_of(problem))
+    for (std::string const& variant : test::calm_choices(problem))
       for (std::string const& formulation : problem.formulations) {
         auto const some = a_cell(problem.name, formulation, "gauss2").of_variant(variant).with_h(problem.step);
         auto const choice = bench::prepare(some.cell).problem;

@@ -2,6 +2,7 @@
 /// Runs of cells for tests: a cell in one line, its record, its history.
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "bench/cell.hpp"
 
@@ -52,6 +53,17 @@ struct CellUnderTest {
 /// where Euler angles end.
 inline std::string calm_variant(std::string_view problem) {
   return problem == "dead_zone" ? "smooth,n4" : problem == "heavy_top" ? "potential" : "";
+}
+
+/// The choices on which every method is tried: the problem's calm one, and those under a constraint.
+inline std::vector<std::string> calm_choices(bench::ProblemWord const& problem) {
+  std::vector<std::string> choices{calm_variant(problem.name)};
+  for (auto const& group : problem.variants)
+    for (std::string const& word : group)
+      if (!word.empty() &&
+          bench::problem_named(problem.name).choose({.words = {word}, .set = {}, .step = problem.step})->pinned())
+        choices.push_back(word);
+  return choices;
 }
 
 inline CellUnderTest a_cell(std::string_view problem, std::string_view formulation, std::string_view integrator) {

@@ -245,7 +245,8 @@ struct ArkodeErk {
       .source = "SUNDIALS 6.4 ARKODE, ERKStep; Reynolds et al. (2023)",
       .pitfall = order == 8
                      ? "SUNDIALS 6.4 takes the last stage for the next step's first though Fehlberg's table is not "
-                       "first-same-as-last (its issue 311): order 7 instead of 8"
+                       "first-same-as-last (its issue 311): order 7 instead of 8, and an estimate that falls slower "
+                       "than the error, which goes as the tolerance to the power 1.1 to 1.5"
                      : "its default safety factors are cautious",
       .no_projection = "ARKODE keeps its own state: projecting it between steps means starting anew",
       .locates_events = false,  // ERKStep finds roots, too, but a new start costs its step control the step size
