@@ -311,6 +311,7 @@ Measured measure(PreparedCell const& prepared, References& references, std::stri
       if (!remark.empty()) record.reason += (record.reason.empty() ? "" : "; ") + remark;
   }
   measured.drift = metrics.drift_series(record.cell);
+  measured.invariants = metrics.invariant_series(record.cell);
   measured.history = std::move(trajectory.history);
   measured.columns = std::move(trajectory.columns);
   return measured;

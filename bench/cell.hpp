@@ -58,6 +58,7 @@ class References {
 struct Measured {
   results::Record record;
   results::Series drift;
+  results::Series invariants;   ///< no rows unless the body is free
   History history;              ///< at samples and output times
   std::vector<Column> columns;  ///< of the history
 };

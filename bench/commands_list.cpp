@@ -2,34 +2,15 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "bench/catalogue.hpp"
 #include "bench/cell.hpp"
 #include "bench/commands.hpp"
 
 namespace polhode::bench {
 namespace {
-
-nlohmann::ordered_json to_json(IntegratorWord const& word) {
-  nlohmann::ordered_json json{{"name", word.name}, {"family", word.family}};
-  json["order"] = word.order && word.fixed ? nlohmann::ordered_json(*word.order) : nlohmann::ordered_json();
-  json["adaptive_only"] = word.adaptive && !word.fixed;
-  json["rival"] = word.rival;
-  json["preserves"] = word.preserves;
-  // Of the space; what is needed of the problem itself stands apart.
-  static std::map<std::string, std::string> const of_the_space{
-      {"rigid_body", "none"}, {"prescribed_rates", "group"}, {"constraint", "none"}};
-  auto const found = of_the_space.find(word.needs);
-  json["needs"] = found == of_the_space.end() ? word.needs : found->second;
-  json["needs_problem"] = nullptr;
-  if (found != of_the_space.end()) json["needs_problem"] = word.needs;
-  json["source"] = word.source;
-  json["pitfall"] = word.pitfall;
-  if (!word.not_built.empty()) json["not_built"] = word.not_built;
-  return json;
-}
 
 nlohmann::ordered_json to_json(ProblemWord const& word) {
   nlohmann::ordered_json json{{"name", word.name},
@@ -61,12 +42,7 @@ std::string variants_text(ProblemWord const& word) {
 
 void list_integrators(bool as_json) {
   auto const& words = vocabulary().integrators;
-  if (as_json) {
-    nlohmann::ordered_json json = nlohmann::ordered_json::array();
-    for (IntegratorWord const& word : words) json.push_back(to_json(word));
-    fmt::print("{}\n", json.dump(1));
-    return;
-  }
+  if (as_json) return fmt::print("{}", catalogue_text());
   std::vector<std::array<std::string, 7>> rows{{"name", "family", "order", "steps", "needs", "keeps", "source"}};
   for (IntegratorWord const& word : words) {
     char const* steps = word.fixed && word.adaptive ? "both" : word.fixed ? "fixed" : "adaptive";

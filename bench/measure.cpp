@@ -8,6 +8,7 @@ namespace polhode::bench {
 namespace {
 
 constexpr int comparisons = 1000;  // at most, over the horizon: a reference costs more than a step
+constexpr int invariants_kept = 500;
 constexpr int moments_kept = 60;
 constexpr double decades_kept = 4;
 
@@ -89,10 +90,21 @@ void Metrics::see(Sight const& sight) {
 void Metrics::see_invariants(Sight const& sight, bool first) {
   Invariants const now = invariants_of(*inertia_, sight.bodies[0].q, sight.bodies[0].omega);
   if (first) start_ = now;
-  auto const relative = [](Quad a, Quad b) { return b == 0 ? double(abs_of(a)) : double(abs_of(Quad((a - b) / b))); };
-  energy_max_ = std::max(energy_max_, relative(now.energy, start_->energy));
-  momentum_max_ = std::max(momentum_max_, relative(now.momentum, start_->momentum));
-  direction_max_ = std::max(direction_max_, angle(now.direction, start_->direction));
+  auto const relative = [](Quad a, Quad b) { return b == 0 ? double(a) : double(Quad((a - b) / b)); };
+  double const energy = relative(now.energy, start_->energy);
+  double const momentum = relative(now.momentum, start_->momentum);
+  double const direction = angle(now.direction, start_->direction);
+  energy_max_ = std::max(energy_max_, std::fabs(energy));
+  momentum_max_ = std::max(momentum_max_, std::fabs(momentum));
+  direction_max_ = std::max(direction_max_, direction);
+  keep_invariants(sight.t, energy, momentum, direction);
+}
+
+void Metrics::keep_invariants(double t, double energy, double momentum, double direction) {
+  if (t < next_invariants_) return;
+  invariant_rows_.push_back({t, energy, momentum, direction});
+  double const interval = t_end_ / invariants_kept;
+  next_invariants_ = interval * (std::floor(t / interval * (1 + 1e-12)) + 1) * (1 - 1e-12);
 }
 
 void Metrics::see_constraint(Sight const& sight) {
@@ -189,6 +201,14 @@ results::Series Metrics::drift_series(std::string const& cell) const {
     series.units.emplace_back("rad");
   }
   return series;
+}
+
+results::Series Metrics::invariant_series(std::string const& cell) const {
+  return {.cell = cell,
+          .name = "invariants",
+          .columns = {"t", "energy", "momentum", "momentum_direction"},
+          .units = {"s", "", "", "rad"},
+          .rows = invariant_rows_};
 }
 
 }  // namespace polhode::bench

@@ -45,9 +45,13 @@ class Metrics {
   /// At most 64 moments, evenly on log t: t, norm_drift, norm_drift_raw (greatest so far), and attitude_error if there
   /// is a reference.
   results::Series drift_series(std::string const& cell) const;
+  /// Of a free body, at about 500 moments, evenly in t: t, energy and momentum (changes relative to the start, with
+  /// their signs), momentum_direction (the angle that L has turned in space).
+  results::Series invariant_series(std::string const& cell) const;
 
  private:
   void see_invariants(Sight const& sight, bool first);
+  void keep_invariants(double t, double energy, double momentum, double direction);
   void see_constraint(Sight const& sight);
   void compare_multipliers(Sight const& sight, QuadBody const& exact);
   void compare(Sight const& sight);
@@ -63,6 +67,8 @@ class Metrics {
   double drift_max_ = 0, drift_final_ = 0, drift_squares_ = 0, raw_max_ = 0;
   std::vector<double> drift_times_, drifts_;
   double energy_max_ = 0, momentum_max_ = 0, direction_max_ = 0;
+  std::vector<std::vector<double>> invariant_rows_;
+  double next_invariants_ = 0;
   double position_defect_ = 0, velocity_defect_ = 0, acceleration_defect_ = 0;
   double multiplier_error_ = 0, largest_multiplier_ = 0;
 

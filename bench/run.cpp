@@ -12,6 +12,7 @@
 #include <set>
 #include <thread>
 
+#include "bench/catalogue.hpp"
 #include "bench/cell.hpp"
 #include "bench/progress.hpp"
 #include "bench/provenance.hpp"
@@ -136,6 +137,7 @@ class Group {
     for (Task* task : tasks_) {
       if (!task->measured.drift.rows.empty()) writer_.series(task->measured.drift);
       if (task->keep_history && !task->measured.history.rows.empty()) writer_.series(history_series(*task));
+      if (task->keep_history && !task->measured.invariants.rows.empty()) writer_.series(task->measured.invariants);
       writer_.run(task->measured.record);
     }
   }
@@ -282,12 +284,15 @@ RunSummary run_suite(Suite const& suite, RunOptions const& options) {
   std::error_code error;
   std::filesystem::create_directories(summary.out, error);
   if (error) throw results::StoreError(fmt::format("{}: {}", summary.out.string(), error.message()));
-  if (options.fresh)
+  if (options.fresh) {
     for (auto const& entry : std::filesystem::directory_iterator(summary.out))
       if (entry.path().extension() == ".jsonl") std::filesystem::remove(entry.path());
+    std::filesystem::remove(summary.out / results::catalogue_file);
+  }
   summary.skipped = skip_finished(tasks, summary.out, options.retry_failed);
   if (tasks.empty()) return summary;
   std::ofstream(summary.out / "suite.toml") << suite.text;
+  results::write_catalogue(summary.out, catalogue_text());
   for (std::filesystem::path const& file : suite.files) {
     std::filesystem::path const copy = summary.out / file.filename();
     if (!std::filesystem::exists(copy) || !std::filesystem::equivalent(file, copy))

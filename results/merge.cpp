@@ -124,9 +124,11 @@ MergeSummary merge(fs::path const& out, std::vector<fs::path> const& folders) {
     }
   }
   auto const suite = common_suite(folders);
+  auto const catalogue = merged_catalogues(folders);
   auto const last = last_runs(parts);
 
   prepare_folder(out, suite);
+  if (catalogue) write_catalogue(out, *catalogue);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     Contents const& contents = parts[i].contents;
     std::set<std::string> counting;

@@ -13,9 +13,9 @@ struct MergeSummary {
 
 /// Writes what the folders hold to `out`, which must not hold records yet. Each file with a meta becomes a file there,
 /// numbered in the order of the folders and of its name, so that its provenance stays with its records; of a cell that
-/// a build ran several times, the last run is kept. Begins without a run are kept, too. suite.toml is copied.
-/// Everything is read before anything is written. Throws StoreError: damage, with file and line; suites that differ; an
-/// `out` that holds records.
+/// a build ran several times, the last run is kept. Begins without a run are kept, too. suite.toml is copied,
+/// catalogues are joined. Everything is read before anything is written. Throws StoreError: damage, with file and line;
+/// suites that differ; an `out` that holds records.
 MergeSummary merge(std::filesystem::path const& out, std::vector<std::filesystem::path> const& folders);
 
 }  // namespace polhode::results

@@ -165,7 +165,7 @@ void for_each_field(R& r, Visit&& visit) {
 /// A sampled history of one run, for figures: row i is (columns[0] at time i, ...). Column 0 is t [s].
 struct Series {
   std::string cell;
-  std::string name;  ///< "drift" or "history"
+  std::string name;  ///< "drift", "history" or "invariants"
   std::vector<std::string> columns;
   std::vector<std::string> units;
   std::vector<std::vector<double>> rows;

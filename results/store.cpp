@@ -211,7 +211,9 @@ Contents read(fs::path const& path) {
   } catch (fs::filesystem_error const& error) {
     throw StoreError(fmt::format("{}: cannot read: {}", path.string(), error.code().message()));
   }
-  return collector.finish();
+  Contents contents = collector.finish();
+  contents.catalogue = read_catalogue(path);
+  return contents;
 }
 
 Writer::Writer(fs::path const& file, Meta const& meta) : file_(file) {

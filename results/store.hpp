@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "results/catalogue.hpp"
 #include "results/record.hpp"
 
 namespace polhode::results {
@@ -29,9 +30,11 @@ struct Contents {
   std::vector<Series> series;   ///< a cell that was run more than once keeps its last series of each name
   std::vector<std::string> unfinished;  ///< cells with a begin and no run of the same build after it
   std::size_t repeated = 0;             ///< runs that a later run of the same cell and build replaced
+  Catalogue catalogue;                  ///< of the integrators; empty if the folder has none, or for one file
 };
 
-/// Reads every *.jsonl in `path` (a folder), in the order of their names, or `path` itself (a file). Throws StoreError.
+/// Reads every *.jsonl in `path` (a folder), in the order of their names, and its catalogue; or `path` itself (a file).
+/// Throws StoreError.
 Contents read(std::filesystem::path const& path);
 
 /// Appends to one file. Each call returns after the line is on disk (fsync). Throws StoreError; what was acknowledged

@@ -1,0 +1,119 @@
+#include "results/catalogue.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <system_error>
+
+#include "results/store.hpp"
+
+namespace polhode::results {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// An array of objects, each with its name.
+Json list_of(std::string const& text) {
+  Json json = Json::parse(text, nullptr, false);
+  auto const is_named = [](Json const& entry) {
+    return entry.is_object() && entry.contains("name") && entry["name"].is_string();
+  };
+  if (!json.is_array() || !std::ranges::all_of(json, is_named)) {
+    throw std::invalid_argument("must be what `polhode list integrators --json` prints");
+  }
+  return json;
+}
+
+IntegratorFacts facts_of(Json const& json) {
+  IntegratorFacts facts;
+  facts.family = json.value("family", "");
+  if (json.contains("order") && !json["order"].is_null()) facts.order = json["order"].get<int>();
+  facts.adaptive_only = json.value("adaptive_only", false);
+  facts.preserves = json.value("preserves", std::vector<std::string>());
+  facts.source = json.value("source", "");
+  facts.pitfall = json.value("pitfall", "");
+  return facts;
+}
+
+/// The file's text; nothing if the folder has none.
+std::optional<std::string> text_of(fs::path const& folder) {
+  fs::path const file = folder / catalogue_file;
+  if (!fs::exists(file)) return {};
+  std::ifstream in(file, std::ios::binary);
+  std::string text(std::istreambuf_iterator<char>(in), {});
+  if (!in) throw StoreError(fmt::format("{}: cannot be read", file.string()));
+  return text;
+}
+
+/// What `read` gives; what it says of the text names the folder's file.
+template <class Read>
+auto in_file(fs::path const& folder, Read read) {
+  try {
+    return read();
+  } catch (std::invalid_argument const& error) {
+    throw StoreError(fmt::format("{}: {}", (folder / catalogue_file).string(), error.what()));
+  }
+}
+
+}  // namespace
+
+Catalogue catalogue_from(std::string const& text) {
+  Catalogue catalogue;
+  for (Json const& entry : list_of(text)) {
+    std::string const name = entry["name"].get<std::string>();
+    try {
+      catalogue[name] = facts_of(entry);
+    } catch (nlohmann::json::exception const&) {
+      throw std::invalid_argument(fmt::format("\"{}\": a value of the wrong type", name));
+    }
+  }
+  return catalogue;
+}
+
+Catalogue read_catalogue(fs::path const& folder) {
+  auto const text = text_of(folder);
+  return text ? in_file(folder, [&] { return catalogue_from(*text); }) : Catalogue();
+}
+
+void write_catalogue(fs::path const& folder, std::string const& text) {
+  fs::path const file = folder / catalogue_file;
+  fs::path const draft = folder / fmt::format("{}.{}", catalogue_file, ::getpid());
+  errno = 0;
+  std::ofstream out(draft, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) {
+    throw StoreError(fmt::format("{}: cannot be written: {}", draft.string(), std::generic_category().message(errno)));
+  }
+  std::error_code error;
+  fs::rename(draft, file, error);
+  if (error) throw StoreError(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
+}
+
+std::optional<std::string> merged_catalogues(std::vector<fs::path> const& folders) {
+  Json merged = Json::array();
+  for (fs::path const& folder : folders) {
+    auto const text = text_of(folder);
+    if (!text) continue;
+    Json const list = in_file(folder, [&] { return list_of(*text); });
+    for (Json const& entry : list) {
+      auto const known = std::ranges::find_if(merged, [&](Json const& one) { return one["name"] == entry["name"]; });
+      if (known == merged.end()) {
+        merged.push_back(entry);
+      } else {
+        *known = entry;
+      }
+    }
+  }
+  if (merged.empty()) return {};
+  return merged.dump(1) + '\n';
+}
+
+}  // namespace polhode::results
