@@ -92,8 +92,8 @@ struct Explicit {
 /// An embedded pair on a flat space; step control in step_control.hpp.
 /// Continuous extension, where the tableau has one, from x to y with end slopes k_1 and k_e, s in [0, 1]:
 ///   s^2 (3 - 2s) y + (1 - s)^2 (1 + 2s) x + h s (1 - s)^2 k_1 - h s^2 (1 - s) k_e + h s^2 (1 - s)^2 sum_i q_i(s) k_i
-///   q(s) = d0 + s (d1 + (1 - s) (d2 + s d3)),  d a row of `dense`: by stage of the pair, then k_e, then stages for
-///   the extension alone (`dense_a`, `dense_c`)
+///   q(s) = d0 + s (d1 + (1 - s) (d2 + s (d3 + (1 - s) d4))),  d a row of `dense`, as far as it goes: by stage of the
+///   pair, then k_e, then stages for the extension alone (`dense_a`, `dense_c`)
 /// Source: Hairer, Norsett & Wanner, Solving ODEs I, II.6 (Hermite's cubic and a bubble)
 template <class T, StepRule control_rule = StepRule{.memory = 0.2 / T::order}>
 struct EmbeddedPair {
@@ -201,8 +201,7 @@ struct EmbeddedPair {
       add(point, R(h * s * rest * rest), step.made.k[0]);
       add(point, R(-(h * s * s * rest)), step.made.k[T::pair_stages]);
       unroll<slopes_inside>([&](auto i) {
-        constexpr auto const& row = T::dense[i];
-        if constexpr (!row[0].is_zero()) add(point, R(bubble * weight_inside(row, s)), step.made.k[i]);
+        if constexpr (!T::dense[i][0].is_zero()) add(point, R(bubble * weight_inside<i>(s, rest)), step.made.k[i]);
       });
     }
 
@@ -215,12 +214,16 @@ struct EmbeddedPair {
         if constexpr (!row[j].is_zero()) add(sum, R(row[j].template as<R>() * h), k[j]);
       });
     }
-    /// q(s).
-    template <class R>
-    static R weight_inside(auto const& row, R const& s) {
-      constexpr std::size_t n = std::extent_v<std::remove_reference_t<decltype(row)>>;
-      auto const d = [&row](std::size_t i) { return i < n ? row[i].template as<R>() : R(0.0); };
-      return d(0) + s * (d(1) + (R(1.0) - s) * (d(2) + s * d(3)));
+    /// q_i(s), from the innermost coefficient outwards; rest = 1 - s.
+    template <int i, class R>
+    static POLHODE_INLINE R weight_inside(R const& s, R const& rest) {
+      constexpr int last = int(std::size(T::dense[i])) - 1;
+      R sum = T::dense[i][last].template as<R>();
+      unroll<last>([&](auto m) POLHODE_LAMBDA {
+        constexpr int j = last - m;
+        sum = T::dense[i][j - 1].template as<R>() + (j % 2 == 1 ? s : rest) * sum;
+      });
+      return sum;
     }
 };
 

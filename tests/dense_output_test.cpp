@@ -21,7 +21,7 @@ struct Extended {
 template <class E>
 class DenseOutput : public testing::Test {};
 using Methods = testing::Types<Extended<Dopri5, DormandPrince5>, Extended<Dop853, DormandPrince853>,
-                               Extended<Verner65, Verner6>, Extended<Verner76, Verner7>>;
+                               Extended<Verner65, Verner6>, Extended<Verner76, Verner7>, Extended<Verner98, Verner9>>;
 TYPED_TEST_SUITE(DenseOutput, Methods);
 
 template <Scalar S>
@@ -45,8 +45,8 @@ test::Row weights_at(Quad s) {
   Quad const rest = 1 - s;
   test::Row weights;
   for (test::Row d : test::in_quad(T::dense)) {
-    d.resize(4);
-    weights.push_back(s * s * rest * rest * (d[0] + s * (d[1] + rest * (d[2] + s * d[3]))));
+    d.resize(5);
+    weights.push_back(s * s * rest * rest * (d[0] + s * (d[1] + rest * (d[2] + s * (d[3] + rest * d[4])))));
   }
   test::Row const b = test::in_quad(T::b);
   for (std::size_t i = 0; i < b.size(); ++i) weights[i] += s * s * (3 - 2 * s) * b[i];
