@@ -147,13 +147,14 @@ Vec3<S> log_quaternion(Quat<S> const& q) {
   return (sign_of(q.w) * Real<S>(2.0) * half / v) * vec(q);
 }
 
+/// Returned by reference: lanes as a value would be passed in different places by kernels for different registers.
 template <class S>
-[[gnu::noinline]] S dexpinv_far(S const& z) {  // (1 - (a/2) cot(a/2)) / a^2, z = a^2
+[[gnu::noinline]] void dexpinv_far(S const& z, S& c) {  // (1 - (a/2) cot(a/2)) / a^2, z = a^2
   S const guarded = z + S(1e-300), half = Real<S>(0.5) * sqrt(guarded);
   S const far = (S(1.0) - half * cos(half) / sin(half)) / guarded;
   S const near = S(1.0) / S(12.0) + z / S(720.0) + z * z / S(30240.0);
   double const switch_at = short_series<S> ? 1e-5 : 1e-11;  // both forms lose equally many digits there
-  return select(z < S(switch_at), near, far);
+  c = select(z < S(switch_at), near, far);
 }
 /// u' when exp(u) turns at body rate omega: omega + u x omega / 2 + c u x (u x omega).
 /// Iserles, Munthe-Kaas, Norsett & Zanna (2000), eq. (B.12), mirrored for body rates.
@@ -164,10 +165,13 @@ POLHODE_INLINE Vec3<S> dexpinv(Vec3<S> const& u, Vec3<S> const& omega) {
   S c(0.0);
   bool near = false;
   if constexpr (short_series<S>) near = all_of(z < S(0.16));
-  if (near) [[likely]]
+  if (near) [[likely]] {
     c = polynomial(z, 691. / 1307674368000., 1. / 47900160, 1. / 1209600, 1. / 30240, 1. / 720, 1. / 12);
-  else
-    c = dexpinv_far<S>(z);
+  } else {
+    S far(0.0);
+    dexpinv_far<S>(z, far);
+    c = far;
+  }
   return omega + Real<S>(0.5) * uw + c * cross(u, uw);
 }
 
