@@ -9,8 +9,6 @@
 #ifdef POLHODE_HAS_SUNDIALS
 #include <cvode/cvode.h>
 #include <cvode/cvode_proj.h>
-#include <sunlinsol/sunlinsol_dense.h>
-#include <sunmatrix/sunmatrix_dense.h>
 #include <sunnonlinsol/sunnonlinsol_fixedpoint.h>
 
 #include <span>
@@ -24,51 +22,44 @@ namespace polhode {
 class CvodeMemory {
  public:
   /// multistep is CV_ADAMS or CV_BDF. Throws std::bad_alloc if the library cannot make its memory.
-  CvodeMemory(int multistep, Adaptive control, CVRhsFn field, void* user, int size) {
-    y_.reset(N_VNew_Serial(size, context_.get()));
-    memory_.reset(CVodeCreate(multistep, context_.get()));
-    if (!y_ || !memory_) throw std::bad_alloc();
-    N_VConst(0, y_.get());
-    bool good = CVodeInit(memory_.get(), field, 0, y_.get()) == CV_SUCCESS &&
-                CVodeSStolerances(memory_.get(), control.rtol, control.atol) == CV_SUCCESS &&
-                CVodeSetUserData(memory_.get(), user) == CV_SUCCESS &&
-                CVodeSetMaxNumSteps(memory_.get(), most_steps) == CV_SUCCESS &&
-                CVodeSetErrFile(memory_.get(), nullptr) == CV_SUCCESS;  // a failure is a status, not a message
+  CvodeMemory(int multistep, Adaptive control, CVRhsFn field, void* user, int size)
+      : y_(make_vector(size, context_)), memory_(CVodeCreate(multistep, context_.get())) {
+    if (!memory_) throw std::bad_alloc();
+    void* const cvode = memory_.get();
+    require_made(CVodeInit(cvode, field, 0, y_.get()));
+    require_made(CVodeSStolerances(cvode, control.rtol, control.atol));
+    require_made(CVodeSetUserData(cvode, user));
+    require_made(CVodeSetMaxNumSteps(cvode, most_sundials_steps));
+    require_made(CVodeSetErrFile(cvode, nullptr));  // a failure is a status, not a message
     if (multistep == CV_ADAMS) {
       fixed_point_.reset(SUNNonlinSol_FixedPoint(y_.get(), 0, context_.get()));
-      good = good && CVodeSetNonlinearSolver(memory_.get(), fixed_point_.get()) == CV_SUCCESS;
+      require_made(CVodeSetNonlinearSolver(cvode, fixed_point_.get()));
     } else {
-      matrix_.reset(SUNDenseMatrix(size, size, context_.get()));
-      linear_.reset(SUNLinSol_Dense(y_.get(), matrix_.get(), context_.get()));
-      good = good && CVodeSetLinearSolver(memory_.get(), linear_.get(), matrix_.get()) == CV_SUCCESS;
+      dense_.make(y_, context_);
+      require_made(CVodeSetLinearSolver(cvode, dense_.solver.get(), dense_.matrix.get()));
     }
-    if (!good) throw std::bad_alloc();
   }
 
   /// From now on steps end on the zeros of `count` functions. Throws std::bad_alloc.
   void find_roots(int count, CVRootFn functions) {
     found_.assign(std::size_t(count), 0);
     roots_.reserve(std::size_t(count));
-    if (CVodeRootInit(memory_.get(), count, functions) != CV_SUCCESS) throw std::bad_alloc();
+    require_made(CVodeRootInit(memory_.get(), count, functions));
     CVodeSetNoInactiveRootWarn(memory_.get());
   }
   std::vector<int> const& roots() const { return roots_; }
 
   /// CVODE's own projection, for BDF: called after every step. Throws std::bad_alloc.
-  void project_with(CVProjFn project) {
-    if (CVodeSetProjFn(memory_.get(), project) != CV_SUCCESS) throw std::bad_alloc();
-  }
+  void project_with(CVProjFn project) { require_made(CVodeSetProjFn(memory_.get(), project)); }
   /// The Jacobian of Newton's iteration, for BDF. Throws std::bad_alloc.
-  void differentiate_with(CVLsJacFn jacobian) {
-    if (CVodeSetJacFn(memory_.get(), jacobian) != CV_SUCCESS) throw std::bad_alloc();
-  }
-  double* state() { return N_VGetArrayPointer(y_.get()); }
+  void differentiate_with(CVLsJacFn jacobian) { require_made(CVodeSetJacFn(memory_.get(), jacobian)); }
+  double* state() { return numbers_of(y_); }
   void restart() { fresh_ = true; }
 
   /// Goes on to t_end, or by one step of CVODE's choice; t moves.
   Status advance(double& t, double t_end, int task) {
     if (std::exchange(fresh_, false)) {
-      collect();
+      counters().add_to(before_, bool(dense_.solver));
       CVodeReInit(memory_.get(), t, y_.get());
     }
     CVodeSetStopTime(memory_.get(), t_end);
@@ -93,34 +84,26 @@ class CvodeMemory {
         return Status::diverged;
     }
   }
-  /// CVODE's counters start anew at each re-initialisation; we keep the sum.
   Work work() const {
     Work sum = before_;
-    add_counters(sum);
+    counters().add_to(sum, bool(dense_.solver));
     return sum;
   }
 
  private:
-  static constexpr long most_steps = 10'000'000;
-
-  void collect() { add_counters(before_); }
-  void add_counters(Work& sum) const {
-    long steps = 0, failures = 0, iterations = 0, jacobians = 0;
-    CVodeGetNumSteps(memory_.get(), &steps);
-    CVodeGetNumErrTestFails(memory_.get(), &failures);
-    CVodeGetNumNonlinSolvIters(memory_.get(), &iterations);
-    if (linear_) CVodeGetNumJacEvals(memory_.get(), &jacobians);
-    sum.steps += steps;
-    sum.rejected += failures;
-    sum.iterations = sum.iterations.value_or(0) + iterations;
-    if (linear_) sum.jacobians = sum.jacobians.value_or(0) + jacobians;
+  SundialsCounters counters() const {
+    SundialsCounters now;
+    CVodeGetNumSteps(memory_.get(), &now.steps);
+    CVodeGetNumErrTestFails(memory_.get(), &now.failures);
+    CVodeGetNumNonlinSolvIters(memory_.get(), &now.iterations);
+    if (dense_.solver) CVodeGetNumJacEvals(memory_.get(), &now.jacobians);
+    return now;
   }
 
   SundialsOwned<SUNContext> context_ = make_sundials_context();  // outlives all that is made in it
   SundialsOwned<N_Vector> y_;
-  SundialsOwned<SUNMatrix> matrix_;
-  SundialsOwned<SUNLinearSolver> linear_;
-  SundialsOwned<SUNNonlinearSolver> fixed_point_;
+  SundialsDense dense_;                            ///< of BDF
+  SundialsOwned<SUNNonlinearSolver> fixed_point_;  ///< of Adams
   SundialsMemory<CVodeFree> memory_;
   bool fresh_ = true;
   std::vector<int> found_, roots_;  ///< CVODE's flags; the functions that are zero now

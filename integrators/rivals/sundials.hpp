@@ -1,6 +1,9 @@
 #pragma once
-/// What the adapters to SUNDIALS share: its objects with owners, and why a binary may lack it.
+/// What the adapters to SUNDIALS share: its objects with owners, dense linear algebra, counters, and why a binary may
+/// lack it.
 #include <string_view>
+
+#include "integrators/integrator.hpp"
 
 #ifdef POLHODE_HAS_SUNDIALS
 #include <nvector/nvector_serial.h>
@@ -8,6 +11,8 @@
 #include <sundials/sundials_linearsolver.h>
 #include <sundials/sundials_matrix.h>
 #include <sundials/sundials_nonlinearsolver.h>
+#include <sunlinsol/sunlinsol_dense.h>
+#include <sunmatrix/sunmatrix_dense.h>
 
 #include <memory>
 #include <new>
@@ -44,6 +49,50 @@ inline SundialsOwned<SUNContext> make_sundials_context() {
   if (SUNContext_Create(nullptr, &context) != 0) throw std::bad_alloc();
   return SundialsOwned<SUNContext>(context);
 }
+/// Throws std::bad_alloc unless a library call that makes something has succeeded; 0 is success in all of SUNDIALS.
+inline void require_made(int code) {
+  if (code != 0) throw std::bad_alloc();
+}
+
+/// n zeros, the library's own storage. Throws std::bad_alloc.
+inline SundialsOwned<N_Vector> make_vector(int n, SundialsOwned<SUNContext> const& context) {
+  SundialsOwned<N_Vector> v(N_VNew_Serial(n, context.get()));
+  if (!v) throw std::bad_alloc();
+  N_VConst(0, v.get());
+  return v;
+}
+inline double* numbers_of(SundialsOwned<N_Vector> const& v) {
+  return N_VGetArrayPointer(v.get());
+}
+
+/// Dense matrix and solver for Newton's iteration.
+struct SundialsDense {
+  SundialsOwned<SUNMatrix> matrix;
+  SundialsOwned<SUNLinearSolver> solver;
+
+  /// For systems of the size of y. Throws std::bad_alloc.
+  void make(SundialsOwned<N_Vector> const& y, SundialsOwned<SUNContext> const& context) {
+    auto const n = N_VGetLength(y.get());
+    matrix.reset(SUNDenseMatrix(n, n, context.get()));
+    if (!matrix) throw std::bad_alloc();
+    solver.reset(SUNLinSol_Dense(y.get(), matrix.get(), context.get()));
+    if (!solver) throw std::bad_alloc();
+  }
+};
+
+/// The counters of a multistep solver start anew at each re-initialisation; we keep the sum.
+struct SundialsCounters {
+  long steps = 0, failures = 0, iterations = 0, jacobians = 0;
+
+  void add_to(Work& sum, bool has_jacobian) const {
+    sum.steps += steps;
+    sum.rejected += failures;
+    sum.iterations = sum.iterations.value_or(0) + iterations;
+    if (has_jacobian) sum.jacobians = sum.jacobians.value_or(0) + jacobians;
+  }
+};
+
+inline constexpr long most_sundials_steps = 10'000'000;
 #else
 inline constexpr std::string_view sundials_not_built = "not built: configure with POLHODE_SUNDIALS=ON";
 #endif
