@@ -99,15 +99,27 @@ constexpr bool quaternion_body = false;
 template <Attitude A>
 constexpr bool quaternion_body<RigidBody<A>> = std::same_as<Point<A>, Quat<double>>;
 
+/// The same of the policies that need steps of our own: where the feedback acts, or what a step is.
+template <Space M>
+std::string_view own_policy_refusal(MethodInfo const& info, NormPolicy policy, bool adaptive) {
+  if (info.rival) return "a library takes its steps itself: this policy is built into our own";
+  if (!M::flat) return "on a group there is no defect to feed back or to relax (formulation quaternion)";
+  if (policy == NormPolicy::baumgarte) return info.no_feedback;
+  if (!OneFlatQuaternion<M>) return "this policy is for one body on flat quaternions (formulation quaternion)";
+  if (policy == NormPolicy::project_symmetric && adaptive) return "symmetric projection is that of equal steps (--h)";
+  return info.no_relaxation;
+}
+
 /// Why a norm policy is refused for a method on space M; empty if it is not.
 template <Space M>
-std::string_view policy_refusal(MethodInfo const& info, NormPolicy policy) {
+std::string_view policy_refusal(MethodInfo const& info, NormPolicy policy, bool adaptive) {
   if (policy == NormPolicy::none) return "";
   if (!M::constrained) return "this formulation has no norm to project";
   if (policy == NormPolicy::native) return info.projects_natively ? "" : "has no projection of its own";
   if (policy == NormPolicy::project_multiplier && !quaternion_body<M>)
     return "the multiplier form of the projection is that of one body's quaternion";
-  return info.no_projection;
+  if (policy == NormPolicy::project || policy == NormPolicy::project_multiplier) return info.no_projection;
+  return own_policy_refusal<M>(info, policy, adaptive);
 }
 
 /// What a method needs of the problem beside its space; empty if it is there.
@@ -133,7 +145,9 @@ std::string refusal_of(PreparedCell const& prepared) {
         MethodOn<M> const& method = method_named<M>(prepared.cell.integrator);
         refusal = method.refusal;
         if (refusal.empty()) refusal = problem_refusal<M>(method.info->needs, *field);
-        if (refusal.empty()) refusal = policy_refusal<M>(*method.info, prepared.plan.policy);
+        if (refusal.empty())
+          refusal = policy_refusal<M>(*method.info, prepared.plan.policy,
+                                      std::holds_alternative<Adaptive>(prepared.plan.control));
       },
       problem);
   return refusal;
@@ -269,6 +283,10 @@ results::Record refused(PreparedCell const& prepared, std::string const& build) 
 
 Measured measure(PreparedCell const& prepared, References& references, std::string const& build, Limits const& limits) {
   Measured measured;
+  if (!prepared.refusal.empty()) {
+    measured.record = refused(prepared, build);
+    return measured;
+  }
   results::Record& record = measured.record;
   record.cell = results::cell_id(prepared.cell);
   record.build = build;
@@ -318,6 +336,7 @@ Measured measure(PreparedCell const& prepared, References& references, std::stri
 }
 
 Trajectory simulate(PreparedCell const& prepared, Limits const& limits) {
+  if (!prepared.refusal.empty()) throw std::logic_error("a refused cell cannot run: " + prepared.refusal);
   return run(prepared, nullptr, limits);
 }
 

@@ -114,11 +114,8 @@ class RunLoop {
       if constexpr (chooses_steps) {
         if (Status const status = stepper_.step(x, t, to); status != Status::ok) return status;
       } else {
-        // The same steps as one advance would take, one at a time; after an event, the rest of the step it was in.
-        R const ahead = from + R(double(i) * h_), next = ahead > to - R(1e-9 * h_) ? to : ahead;
-        Status const status = on_grid ? stepper_.advance(x, t, next) : advance_exactly(stepper_, x, t, next);
-        if (status != Status::ok) return status;
-        t = next;
+        R const next = from + R(double(i) * h_);
+        if (Status const status = fixed_step(x, t, next, to, on_grid); status != Status::ok) return status;
       }
       bool crossed = false;
       if (locator_)
@@ -143,6 +140,15 @@ class RunLoop {
         }
     }
     return Status::ok;
+  }
+  /// The same steps as one advance would take, one at a time: to `ahead`, or to `to` if that comes first; after an
+  /// event, the rest of the step it was in. In relaxed time the stepper itself says where a step ends.
+  Status fixed_step(Point<M>& x, R& t, R const& ahead, R const& to, bool on_grid) {
+    if constexpr (requires { stepper_.moves_time(); })
+      if (stepper_.moves_time()) return stepper_.relaxed_step(x, t, to);
+    R const begun = t;
+    t = ahead > to - R(1e-9 * h_) ? to : ahead;
+    return on_grid ? stepper_.advance(x, begun, t) : advance_exactly(stepper_, x, begun, t);
   }
   Status locate(R& t, Point<M>& x, bool& crossed) {
     if constexpr (!SwitchingProblem<P>) return Status::ok;

@@ -57,13 +57,17 @@ class ExactStepper {
 /// Exact but for round-off at any step; 1 evaluation of the closed form per advance, none of the field.
 /// keeps  the norm, energy, |L| and the direction of L in space, bounded for ever
 struct Exact {
+  static constexpr std::string_view arc =
+      "each state is that of the closed form at its time, not a step from the one before";
   static constexpr MethodInfo info{
       .name = "exact",
       .family = Family::exact,
       .needs = Needs::free_body,
       .preserves = keeps_norm | keeps_energy | keeps_momentum | keeps_momentum_direction | is_symplectic | is_symmetric,
       .source = "van Zon & Schofield (2007), J. Comput. Phys. 225, 145; Celledoni, Faso, Safstrom & Zanna (2008)",
-      .pitfall = "near the separatrix the data's own rounding errors grow without it"};
+      .pitfall = "near the separatrix the data's own rounding errors grow without it",
+      .no_feedback = arc,
+      .no_relaxation = arc};
   template <RigidBodyProblem P>
     requires std::same_as<typename P::Space::Scalar, Real<typename P::Space::Scalar>>
   auto bind(P const& p, FixedStep, NormPolicy policy) const { return ExactStepper<P>(p, policy); }

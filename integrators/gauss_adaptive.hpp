@@ -72,10 +72,12 @@ class GaussControlled {
     if (!all_finite(method_.start_slope())) return Status::diverged;
     if (!(R(0.0) < h_)) h_ = starting_step(x, t, t_end - t);
     bool rejected_before = false, unsolved = false;
+    R const reach(policy_ == NormPolicy::relaxation ? relaxed_reach : 1 + 1e-10);
+    R relaxed(0.0);  // gamma - 1 of a step that must land, and is taken again for it
     for (std::int64_t trial = 0; trial < most; ++trial) {
       R const left = t_end - t;
-      bool const last = h_ * R(1.0 + 1e-10) >= left;
-      R const h = last ? left : h_;
+      bool const last = h_ * reach >= left;
+      R const h = last ? left / (R(1.0) + relaxed) : h_;
       if (double(h) <= 10 * std::numeric_limits<double>::epsilon() * std::fabs(double(t)) && !last)
         return unsolved ? Status::nonlinear_fail : Status::step_underflow;
       trial_ = x;
@@ -85,23 +87,38 @@ class GaussControlled {
       double const size = unsolved ? std::numeric_limits<double>::infinity() : error_size(h, x);
       double const exponent = 1.0 / (stages_ + 1), memory = 0.2 * exponent;
       if (size <= 1) {
+        R gamma_less_one(0.0);
+        if constexpr (OneFlatQuaternion<M>)
+          if (policy_ == NormPolicy::relaxation) [[unlikely]] {
+            gamma_less_one = relaxation_less_one<M>(x, trial_);
+            bool const possible = can_relax(gamma_less_one);
+            if (!possible || (last && relaxed == R(0.0) && gamma_less_one != R(0.0))) {
+              take_back();
+              if (possible) {
+                relaxed = gamma_less_one;
+              } else {
+                ++work_.rejected;
+                rejected_before = true;
+                h_ = h * R(0.5);
+              }
+              continue;
+            }
+          }
         double const factor = std::pow(size, exponent - 0.75 * memory) / std::pow(last_size_, memory);
         double const growth = std::clamp(0.9 / std::max(factor, 1e-10), 0.2, 5.0);
         // A step cut short by t_end says little about the next one.
         if (!last || h == h_ || growth < 1) h_ = h * R(rejected_before ? std::min(growth, 1.0) : growth);
         last_size_ = std::max(size, 1e-4);
+        if (policy_ != NormPolicy::none) projections_.template apply<M>(x, trial_, policy_, double(h), gamma_less_one);
         std::swap(x, trial_);
-        t = last ? t_end : R(t + h);
+        t = last ? t_end : R(t + h + gamma_less_one * h);
         ++work_.steps;
-        if (policy_ != NormPolicy::none) projections_.template apply<M>(x, policy_);
         return Status::ok;
       }
       ++work_.rejected;
       if (!all_finite(x)) return Status::diverged;
       rejected_before = true;
-      memory_.carry = carry_;
-      memory_.last_step = R(0.0);
-      memory_.unconverged = false;
+      take_back();
       double const shrink = std::isfinite(size) ? 0.9 / std::pow(size, exponent - 0.75 * memory) : 0.0;
       h_ = h * R(std::max(0.2, shrink));
     }
@@ -128,6 +145,13 @@ class GaussControlled {
 
  private:
   static constexpr std::int64_t most = 10'000'000;
+
+  /// The last step never was.
+  void take_back() {
+    memory_.carry = carry_;
+    memory_.last_step = R(0.0);
+    memory_.unconverged = false;
+  }
   using Body = typename BodyOf<M>::type;
 
   /// The tolerance that the estimate is held to.

@@ -101,6 +101,11 @@ class CanonicalStepper {
     take_up(x);
     return give(x, stepper_.one_step(state_, t, t_end));
   }
+  bool moves_time() const { return stepper_.moves_time(); }
+  Status relaxed_step(X& x, R& t, R t_end) {
+    take_up(x);
+    return give(x, stepper_.relaxed_step(state_, t, t_end));
+  }
   void restart() {
     stepper_.restart();
     begun_ = false;

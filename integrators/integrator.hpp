@@ -6,7 +6,9 @@
 ///   restart()                        the field has jumped or x was changed from outside: forget history
 ///   begin()                          if there: a new run, forget the step size, too; otherwise restart() says it all
 ///   work()                           counts since bind
-/// Methods of equal steps have one_step(x, t, t_end), too: a step of any length, to events and from them.
+/// Methods of equal steps have one_step(x, t, t_end), too: a step of any length, to events and from them. Where the
+/// norm policy is relaxation, moves_time() is true, and steps are not equal in time: relaxed_step(x, t, t_end) takes
+/// one, t moves.
 /// Methods that choose their own steps also have step(x, t, t_end): one accepted step, t moves.
 /// Those whose steps depend on where it all ends have set_horizon(t, t_end): a smooth arc begins.
 /// Libraries that find the zeros of switching functions themselves have find_roots() (do, from now on) and roots(): the
@@ -80,6 +82,8 @@ struct MethodInfo {
   std::string_view source;
   std::string_view pitfall = "";
   std::string_view no_projection = "";  ///< why policies `project` and `project_multiplier` are refused
+  std::string_view no_feedback = "";    ///< why policy `baumgarte` is refused, of own methods
+  std::string_view no_relaxation = "";  ///< why `relaxation` and `project_symmetric`, which change steps, are refused
   bool projects_natively = false;       ///< knows policy `native`
   bool locates_events = true;           ///< by taking a step again, shorter, or by root finding of its own
   std::string_view not_built = "";      ///< why this binary refuses it
@@ -195,23 +199,46 @@ class Fixed {
 
   /// Fails with Status::diverged if the state is no longer finite at t_end.
   Status advance(Point<M>& x, R t, R t_end) {
+    if (moves_time()) [[unlikely]] {
+      Status status = Status::ok;
+      while (status == Status::ok && t != t_end) status = relaxed_step(x, t, t_end);
+      return status;
+    }
     auto const whole = std::int64_t(std::floor(double((t_end - t) / h_) + 1e-9));
     R const rest = t_end - t - R(double(whole)) * h_;
     bool const divides = double(rest / h_) < 1e-9;
-    run(x, t, divides ? equal_step(t_end - t, whole) : h_, whole);
-    if (!divides) run(x, t + R(double(whole)) * h_, rest, 1);
+    take(x, t, divides ? equal_step(t_end - t, whole) : h_, whole);
+    if (!divides) take(x, t + R(double(whole)) * h_, rest, 1);
     return health_of(x);
   }
   /// One step to t_end, however long.
   Status one_step(Point<M>& x, R t, R t_end) {
-    run(x, t, t_end - t, 1);
+    if (moves_time()) [[unlikely]]
+      take_relaxed(x, t, t_end - t, true);
+    else
+      take(x, t, t_end - t, 1);
     return health_of(x);
   }
-  void restart() { memory_.restart(); }
+  /// The policy is relaxation: a step of h ends gamma h later.
+  bool moves_time() const { return OneFlatQuaternion<M> && policy_ == NormPolicy::relaxation; }
+  /// If moves_time(): one step in relaxed time, not beyond t_end. The last before t_end is up to a tenth longer, or
+  /// shorter: none is left that is tiny.
+  Status relaxed_step(Point<M>& x, R& t, R t_end) {
+    R const left = t_end - t;
+    bool const lands = double(left / h_) <= relaxed_reach;
+    R const moved = take_relaxed(x, t, lands ? left : h_, lands);
+    t = lands ? t_end : R(t + moved);
+    return health_of(x);
+  }
+  void restart() {
+    memory_.restart();
+    unprojected_ = false;
+  }
   Work work() const {
     Work work;
     work.steps = steps_;
     if constexpr (requires { memory_.iterations; }) work.iterations = memory_.iterations;
+    if constexpr (requires { memory_.jacobians; }) work.jacobians = memory_.jacobians;
     if constexpr (requires { memory_.evaluations; }) work.evaluations = memory_.evaluations;
     return work;
   }
@@ -229,6 +256,7 @@ class Fixed {
     if (!all_finite(x)) return Status::diverged;
     if constexpr (requires { memory_.unconverged; })
       if (memory_.unconverged) return Status::nonlinear_fail;
+    if (unprojected_) return Status::nonlinear_fail;
     return Status::ok;
   }
   /// In double h itself, so that one long advance and many short ones take the same steps to the last bit. A longer
@@ -256,22 +284,110 @@ class Fixed {
   POLHODE_INLINE void run_steps(P const& p, Point<M>& x, R t, R h, std::int64_t n, auto& frame, auto& memory) {
     for (std::int64_t i = 0; i < n; ++i) {
       method_.step(p, S(t + R(double(i)) * h), h, x, frame, memory);
-      if (policy_ != NormPolicy::none) [[unlikely]]
-        projections_.template apply<M>(x, policy_);
+      if (at_border_ != NormPolicy::none) [[unlikely]]
+        projections_.template apply<M>(x, at_border_);
     }
   }
-  [[gnu::flatten]] void run_flattened(Point<M>& x, R t, R h, std::int64_t n) { loop(x, t, h, n); }
+  /// One copy, whatever g++ would make of n = 1.
+  [[gnu::flatten, gnu::noinline, gnu::noclone]] void run_flattened(Point<M>& x, R t, R h, std::int64_t n) {
+    loop(x, t, h, n);
+  }
   void run(Point<M>& x, R t, R h, std::int64_t n) {
     if constexpr (ScalarTraits<S>::flattened && !PowerSpace<M>)
       run_flattened(x, t, h, n);
     else
       loop(x, t, h, n);  // many bodies, long floats, series: inlining everything costs compile time and gains nothing
   }
+  /// n steps under every policy but relaxation. What is done beyond projecting is done here, a step at a time: one more
+  /// branch in run_steps, and g++ 12 spills so much that RK4 without any policy takes 1.06 to 1.2 times as long.
+  void take(Point<M>& x, R t, R h, std::int64_t n) {
+    if (at_border_ == policy_) [[likely]]
+      return run(x, t, h, n);
+    double const part = feedback_part(double(h));
+    for (std::int64_t i = 0; i < n; ++i) {
+      R const now = t + R(double(i)) * h;
+      if constexpr (OneFlatQuaternion<M>)
+        if (policy_ == NormPolicy::project_symmetric) {
+          take_symmetric(x, now, h);
+          continue;
+        }
+      run(x, now, h, 1);
+      if (policy_ == NormPolicy::baumgarte) projections_.template feed_back<M>(x, part);
+    }
+  }
+
+  // ---- Policies that change the step itself ----
+
+  /// One step from (t, x) in relaxed time: of length h, or ending h later. Returns gamma h. A step that lands is taken
+  /// again with the length that ends there but for O(h^(2p-1)): merely forgetting that its time is gamma h, as
+  /// Ketcheson's IDT does, would cost an order where every step lands.
+  R take_relaxed(Point<M>& x, R const& t, R h, bool lands) {
+    if constexpr (OneFlatQuaternion<M>) {
+      Point<M> const before = x;
+      auto const memory = memory_;
+      run(x, t, h, 1);
+      R excess = relaxation_less_one<M>(before, x);
+      if (lands && excess != R(0.0) && can_relax(excess)) {
+        take_back(memory);
+        x = before;
+        h = h / (R(1.0) + excess);
+        run(x, t, h, 1);
+        excess = relaxation_less_one<M>(before, x);
+      }
+      if (!can_relax(excess)) unprojected_ = true;
+      projections_.template relax<M>(before, x, excess);
+      return h + excess * h;
+    } else {
+      return h;
+    }
+  }
+  /// One step of project_symmetric: (1 + mu) q is where it begins, q' / (1 - mu) where it ends, |q'| = 1 - mu.
+  /// Simplified Newton for mu, whose matrix is 2, until round-off.
+  void take_symmetric(Point<M>& x, R const& t, R const& h) {
+    Point<M> const before = x;
+    auto const memory = memory_;
+    S mu(0.0), least(1e300);
+    S const rounding(std::same_as<S, double> ? 0x1p-52 : 0x1p-111);
+    double raw = 0;
+    for (int pass = 0;; ++pass) {
+      if (pass > 0) {
+        take_back(memory);
+        x = before;
+        add(x.first, mu, before.first);
+      }
+      run(x, t, h, 1);
+      if (pass == 0) raw = double(M::defect(x));
+      S const residual = norm_less_one(x.first) + mu, size = abs_of(residual);
+      if (!(rounding < size && size < S(0.5) * least) || pass == 20) {
+        if (!(size < S(1e-9))) unprojected_ = true;
+        break;
+      }
+      least = size;
+      mu -= S(0.5) * residual;
+    }
+    UnitQuaternion<S>::project(x.first);  // q' / (1 - mu), to the last bit
+    projections_.note(raw, 2 * std::fabs(double(mu)));
+  }
+  /// The last step never was; what it counted stays counted.
+  void take_back(auto const& memory) {
+    auto const after = memory_;
+    memory_ = memory;
+    if constexpr (requires { after.iterations; }) memory_.iterations = after.iterations;
+    if constexpr (requires { after.jacobians; }) memory_.jacobians = after.jacobians;
+    if constexpr (requires { after.evaluations; }) memory_.evaluations = after.evaluations;
+    // Increments that the method itself keeps are those of the step that is taken back.
+    if constexpr (requires { after.last_step; }) memory_.last_step = R(0.0);
+    --steps_;
+  }
 
   Method method_;
   P const* problem_;
   R h_;
   NormPolicy policy_;
+  /// What is done after every step within run_steps.
+  NormPolicy at_border_ =
+      policy_ == NormPolicy::project || policy_ == NormPolicy::project_multiplier ? policy_ : NormPolicy::none;
+  bool unprojected_ = false;  ///< there was no gamma or mu
   Workspace<M, typename Method::template Frame<M>> frame_;
   typename Method::template Memory<M> memory_{};
   Projections projections_;

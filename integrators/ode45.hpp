@@ -102,7 +102,7 @@ class Ode45Stepper {
     h_ = h;
     ++work_.steps;
     if (policy_ == NormPolicy::none) return;
-    projections_.template apply<M>(y_, policy_);
+    projections_.template apply<M>(y_, policy_, double(h));
     slope(*problem_, S(reached_), y_, frame_.v, slope_);
   }
   double threshold() const { return control_.atol / control_.rtol; }
@@ -165,7 +165,8 @@ struct Dopri5Ode45 {
       .family = Family::explicit_rk,
       .needs = Needs::flat,
       .source = "Dormand & Prince (1980); step control: Shampine & Reichelt (1997)",
-      .pitfall = "its customary tolerance, 1e-3, has printed wrong digits in more than one paper"};
+      .pitfall = "its customary tolerance, 1e-3, has printed wrong digits in more than one paper",
+      .no_relaxation = "its steps are those of a published step control, which knows no relaxed time"};
   template <Problem P>
     requires FlatSpace<typename P::Space>
   auto bind(P const& p, Adaptive control, NormPolicy policy) const { return Ode45Stepper<P>(p, control, policy); }

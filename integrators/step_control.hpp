@@ -57,10 +57,12 @@ class Controlled {
     if (!all_finite(slope_)) return Status::diverged;
     if (!(R(0.0) < h_)) h_ = starting_step(x, t, t_end - t);
     bool rejected_before = false;
+    R const reach(policy_ == NormPolicy::relaxation ? relaxed_reach : 1 + 1e-10);
+    R relaxed(0.0);  // gamma - 1 of a step that must land, and is taken again for it
     for (std::int64_t trial = 0; trial < most; ++trial) {
       R const left = t_end - t;
-      bool const last = h_ * R(1.0 + 1e-10) >= left;
-      R const h = last ? left : h_;
+      bool const last = h_ * reach >= left;
+      R const h = last ? left / (R(1.0) + relaxed) : h_;
       if (double(h) <= 10 * std::numeric_limits<double>::epsilon() * std::fabs(double(t)) && !last)
         return Status::step_underflow;
       auto&& frame = frame_.open();
@@ -76,12 +78,29 @@ class Controlled {
       constexpr double exponent = 1.0 / Pair::order - 0.75 * rule.memory;
       double const factor = std::pow(size, exponent) / std::pow(last_size_, rule.memory);
       if (size <= 1) {
+        R gamma_less_one(0.0);
+        if constexpr (OneFlatQuaternion<M>)
+          if (policy_ == NormPolicy::relaxation) [[unlikely]] {
+            gamma_less_one = relaxation_less_one<M>(x, trial_.y);
+            if (!can_relax(gamma_less_one)) {
+              ++work_.rejected;
+              rejected_before = true;
+              h_ = h * R(0.5);
+              continue;
+            }
+            if (last && relaxed == R(0.0) && gamma_less_one != R(0.0)) {
+              relaxed = gamma_less_one;
+              continue;
+            }
+          }
         double const growth = std::clamp(rule.safety / std::max(factor, 1e-10), rule.least, rule.most);
         // A step cut short by t_end says little about the next one.
         if (!last || h == h_ || growth < 1) h_ = h * R(rejected_before ? std::min(growth, 1.0) : growth);
         last_size_ = std::max(size, 1e-4);
-        R const end = last ? t_end : R(t + h);
-        if constexpr (dense) keep(x, t, end, frame);
+        R const end = last ? t_end : R(t + h + gamma_less_one * h);
+        if constexpr (dense) keep(x, t, end, gamma_less_one, frame);
+        if (policy_ != NormPolicy::none)
+          projections_.template apply<M>(x, trial_.y, policy_, double(h), gamma_less_one);
         x = trial_.y;
         if constexpr (Pair::first_same_as_last)
           slope_ = trial_.slope;
@@ -89,10 +108,7 @@ class Controlled {
           fresh_slope_ = false;
         t = end;
         ++work_.steps;
-        if (policy_ != NormPolicy::none) {
-          projections_.template apply<M>(x, policy_);
-          fresh_slope_ = false;
-        }
+        if (policy_ != NormPolicy::none) fresh_slope_ = false;
         return Status::ok;
       }
       ++work_.rejected;
@@ -113,21 +129,23 @@ class Controlled {
     restart();
     h_ = R(0.0);
   }
-  /// The state at time t [s] within the last accepted step, on the constraint if the policy is to project. The first
-  /// call after a step pays the evaluations that the extension needs beyond the step's own. Not after restart(): the
-  /// field may be another.
+  /// The state at time t [s] within the last accepted step, under the norm policy as its end is. The first call after a
+  /// step pays the evaluations that the extension needs beyond the step's own. Not after restart(): the field may be
+  /// another.
   void interpolate(R const& t, Point<M>& x) requires(dense) {
-    R const h = kept_.end - kept_.begin;
+    bool const relaxed = kept_.gamma_less_one != R(0.0);
+    R const span = kept_.end - kept_.begin, h = relaxed ? R(span / (R(1.0) + kept_.gamma_less_one)) : span;
     if (!kept_.complete) {
-      pair_.complete(*problem_, kept_.begin, kept_.end, kept_.inside);
+      pair_.complete(*problem_, kept_.begin, relaxed ? R(kept_.begin + h) : kept_.end, kept_.inside);
       kept_.complete = true;
       if (kept_.goes_on && !fresh_slope_ && policy_ == NormPolicy::none) {
         slope_ = pair_.template last_slope<M>(kept_.inside);
         fresh_slope_ = true;
       }
     }
-    pair_.template interpolate<M>(R((t - kept_.begin) / h), h, kept_.inside, x);
-    if (policy_ != NormPolicy::none) Projections{}.template apply<M>(x, policy_);
+    pair_.template interpolate<M>(R((t - kept_.begin) / span), h, kept_.inside, x);
+    if (policy_ != NormPolicy::none)
+      Projections::apply_inside<M>(kept_.inside.x, x, policy_, double(t - kept_.begin), kept_.gamma_less_one);
   }
   Work work() const { return work_; }
   Projections projections() const { return projections_; }
@@ -190,17 +208,19 @@ class Controlled {
       if constexpr (Pair::two_estimates) third = error;
     }
   };
-  /// What is kept of the last step, from begin to end [s].
+  /// What is kept of the last step, from begin to end [s]; y is where it ended before the norm policy.
   struct Kept {
     bool complete = false;
     bool goes_on = false;  ///< the next step begins where this one ended
-    R begin = R(0.0), end = R(0.0);
+    R begin = R(0.0), end = R(0.0), gamma_less_one = R(0.0);
     typename Pair::template Inside<M> inside;
   };
   struct Nothing {};
-  POLHODE_INLINE void keep(Point<M> const& x, R const& begin, R const& end, auto const& frame) {
+  POLHODE_INLINE void keep(Point<M> const& x, R const& begin, R const& end, R const& gamma_less_one,
+                           auto const& frame) {
     kept_.begin = begin;
     kept_.end = end;
+    kept_.gamma_less_one = gamma_less_one;
     kept_.complete = false;
     kept_.goes_on = true;
     kept_.inside.x = x;

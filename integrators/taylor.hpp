@@ -251,7 +251,7 @@ class TaylorStepper {
     load(change, components.data());
     M::retract_exactly(y_, change, carry_, carry_);
     ++work_.steps;
-    if (policy_ != NormPolicy::none) projections_.template apply<M>(y_, policy_);
+    if (policy_ != NormPolicy::none) projections_.template apply<M>(y_, policy_, h);
     return Status::ok;
   }
   /// The state within the last step.
@@ -329,7 +329,8 @@ struct Taylor : TaylorOfDegree<20> {
                                    .order = 20,
                                    .needs = Needs::quaternion,
                                    .source = "Jorba & Zou (2005), Experimental Mathematics 14, 99",
-                                   .pitfall = "a kink of the field within a step is not seen"};
+                                   .pitfall = "a kink of the field within a step is not seen",
+                                   .no_relaxation = "its series leave the norm to round-off: nothing to relax"};
 };
 
 }  // namespace polhode
