@@ -42,8 +42,9 @@ void initialise_timer(std::vector<std::string> const& flags) {
 }
 
 results::CpuTime bootstrap(std::vector<double> values) {
+  results::CpuTime time{.repetitions = int(values.size()), .samples = values};
   std::sort(values.begin(), values.end());
-  results::CpuTime time{.median = median_of_sorted(values), .low = 0, .high = 0, .repetitions = int(values.size())};
+  time.median = median_of_sorted(values);
   constexpr int resamples = 1000;
   std::mt19937 random(1);
   std::uniform_int_distribution<std::size_t> pick(0, values.size() - 1);

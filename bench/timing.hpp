@@ -33,7 +33,8 @@ void initialise_timer(std::vector<std::string> const& flags);
 std::vector<TimedResult> time_cells(std::vector<TimedCell> const& cells, Timing const& timing,
                                     std::atomic<bool> const& stop, std::function<void()> const& progress);
 
-/// Median and 95% percentile-bootstrap interval of the median [same unit as the values]. Deterministic.
+/// Median and 95% percentile-bootstrap interval of the median [same unit as the values], and the values themselves.
+/// Deterministic.
 results::CpuTime bootstrap(std::vector<double> values);
 
 }  // namespace polhode::bench

@@ -98,6 +98,7 @@ Json encode(CpuTime const& time) {
   object["low"] = encode(time.low);
   object["high"] = encode(time.high);
   object["repetitions"] = encode(std::int64_t{time.repetitions});
+  if (!time.samples.empty()) object["samples"] = encode(time.samples);
   return object;
 }
 
@@ -252,6 +253,7 @@ void decode(Json const& json, std::string const& where, CpuTime& time) {
   decode(members.take("low"), members.where("low"), time.low);
   decode(members.take("high"), members.where("high"), time.high);
   decode(members.take("repetitions"), members.where("repetitions"), time.repetitions);
+  if (json.contains("samples")) decode(members.take("samples"), members.where("samples"), time.samples);
   members.nothing_left();
 }
 

@@ -83,6 +83,7 @@ struct Claim {
 struct CpuTime {
   double median = 0, low = 0, high = 0;
   int repetitions = 0;
+  std::vector<double> samples = {};  ///< each repetition, as they came; empty in older files
 };
 
 /// One run.

@@ -485,4 +485,10 @@ TEST(Meta, MalformedInputIsNamed) {
             "kind: a name that every record has; must have another name in a meta");
 }
 
+TEST(Record, RepetitionsOfATimeComeBackAsTheyWere) {
+  Record record = full_record();
+  record.cpu_time_s->samples = {1.5, 1.0 / 3, 1.25};
+  EXPECT_EQ(record_from_json(through_text(to_json(record))).cpu_time_s->samples, record.cpu_time_s->samples);
+}
+
 }  // namespace
