@@ -102,14 +102,6 @@ std::size_t rank_of(Cell const& c) {
   return rank;
 }
 
-/// Two-sided 95% quantile of Student's t.
-double student(std::size_t freedom) {
-  static constexpr double table[] = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228};
-  if (freedom <= std::size(table)) return table[freedom - 1];
-  auto const n = static_cast<double>(freedom);
-  return 1.96 + 2.4 / n + 3.0 / (n * n);  // within 0.005 from 10 on
-}
-
 }  // namespace
 
 bool is_rival(std::string_view integrator) {
@@ -220,29 +212,6 @@ std::optional<double> common_step(std::map<double, std::set<std::string>> const&
     if (shared && (!best || distance(h) < distance(*best))) best = h;
   }
   return best;
-}
-
-std::optional<Order> fit_order(std::vector<std::pair<double, double>> const& points) {
-  auto const n = static_cast<double>(points.size());
-  double x_mean = 0, y_mean = 0;
-  for (auto const& [h, error] : points) {
-    x_mean += std::log(h) / n;
-    y_mean += std::log(error) / n;
-  }
-  double xx = 0, xy = 0, yy = 0;
-  for (auto const& [h, error] : points) {
-    double const x = std::log(h) - x_mean, y = std::log(error) - y_mean;
-    xx += x * x;
-    xy += x * y;
-    yy += y * y;
-  }
-  if (points.size() < 2 || !(xx > 1e-12)) return {};
-  Order order{xy / xx, {}, points.size()};
-  if (points.size() > 2) {
-    double const variance = std::max(0.0, yy - order.slope * xy) / (n - 2);
-    order.half_width = student(points.size() - 2) * std::sqrt(variance / xx);
-  }
-  return order;
 }
 
 Facts::Facts(results::Contents const& all) : contents(all) {

@@ -75,16 +75,6 @@ Measure measure_of(Instance const& instance);
 /// that all methods but one at most, of the best covered step, share.
 std::optional<double> common_step(std::map<double, std::set<std::string>> const& methods);
 
-/// A measured order: least squares of log(error) on log(h).
-struct Order {
-  double slope = 0;
-  std::optional<double> half_width;  ///< of the 95% interval; needs three points
-  std::size_t points = 0;
-};
-
-/// The fit through (h, error), all positive; absent with fewer than two different h.
-std::optional<Order> fit_order(std::vector<std::pair<double, double>> const& points);
-
 /// What the report's question is first asked of: motion without control, a smooth closed loop, sampled control.
 struct Headline {
   std::string_view problem, word;  ///< and a word of its variant, if it has variants

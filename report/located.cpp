@@ -65,6 +65,12 @@ std::string slope_of(results::OrderFit const& fit) {
   return fmt::format("{:.{}f}", fit.slope, *fit.half_width < 0.1 ? 2 : 1);
 }
 
+Entry half_width_of(results::OrderFit const& fit) {
+  if (!fit.half_width) return absent;
+  double const w = *fit.half_width;
+  return {w < 0.01 ? "< 0.01" : fmt::format("{:.{}f}", w, w < 0.1 ? 2 : 1), exact(w)};
+}
+
 Entry events_of(std::vector<Record const*> const& runs) {
   std::set<std::int64_t> counts;
   for (Record const* run : runs) {

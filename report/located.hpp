@@ -34,6 +34,8 @@ results::OrderResult order_of(Sweep const& sweep, double h_most = std::numeric_l
                               ErrorKind const& kind = attitude_at_end);
 /// A slope with no more digits than its interval allows; ~ before one through two points.
 std::string slope_of(results::OrderFit const& fit);
+/// Half of its 95% interval, "< 0.01" where that is all there is to say.
+Entry half_width_of(results::OrderFit const& fit);
 
 /// How many state events were located: "3", "0 to 3" where runs differ; `absent` where there are none to locate.
 Entry events_of(std::vector<results::Record const*> const& runs);

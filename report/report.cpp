@@ -32,6 +32,7 @@ Document document_of(results::Contents const& contents) {
   add_so3(document, facts);
   add_classics(document, facts);
   add_constrained(document, facts);
+  add_integrators(document, facts);
   add_orders(document, facts);
   add_failures(document, facts);
   add_references(document, facts);

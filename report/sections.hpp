@@ -25,6 +25,9 @@ void add_so3(Document& document, Facts const& facts);
 void add_so3_orders(Document& document, Facts const& facts);
 void add_classics(Document& document, Facts const& facts);
 void add_constrained(Document& document, Facts const& facts);
+void add_integrators(Document& document, Facts const& facts);
+/// What is kept of a free motion against time: part of the section on integrators.
+void add_conservation(Document& document, Facts const& facts);
 void add_orders(Document& document, Facts const& facts);
 void add_failures(Document& document, Facts const& facts);
 void add_references(Document& document, Facts const& facts);

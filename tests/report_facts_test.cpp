@@ -5,6 +5,7 @@
 #include <set>
 
 #include "report/facts.hpp"
+#include "report/located.hpp"
 #include "report/render.hpp"
 #include "report/text.hpp"
 #include "tests/report_samples.hpp"
@@ -60,17 +61,21 @@ TEST(Facts, TheCommonStepIsTheBestCoveredNearATenth) {
   EXPECT_FALSE(common_step({}));
 }
 
-TEST(Facts, OrderOfAnExactPowerLaw) {
-  std::vector<std::pair<double, double>> points;
-  for (double const h : {0.4, 0.2, 0.1, 0.05}) points.emplace_back(h, 3e-3 * std::pow(h, 4));
-  auto const order = fit_order(points);
-  ASSERT_TRUE(order && order->half_width);
-  EXPECT_NEAR(order->slope, 4, 1e-12);
-  EXPECT_LT(*order->half_width, 1e-6);
-  EXPECT_FALSE(fit_order({{0.1, 1e-3}}));
-  EXPECT_FALSE(fit_order({{0.1, 1e-3}, {0.1, 1e-4}}));
-  points[0].second *= 2;
-  EXPECT_GT(*fit_order(points)->half_width, 0.3);
+TEST(Facts, OrdersAreThoseOfTheResults) {
+  Contents c;
+  for (double const h : {0.0125, 0.025, 0.05, 0.1, 0.2}) {
+    c.records.push_back(made("free_body", "", {"m", 4, 3e-3, 2, 0}, h));
+  }
+  c.records[0].attitude_error_end = 3e-13;  // round-off
+  c.records[4].attitude_error_end = 0.2;    // before the leading term rules
+  Facts const facts(c);
+  auto const order = order_of(facts.instances.at(0).sweeps().at(0));
+  ASSERT_TRUE(order.fit && order.fit->half_width);
+  EXPECT_NEAR(order.fit->slope, 4, 1e-12);
+  EXPECT_EQ(order.fit->points, 3U);
+  EXPECT_EQ(order.fit->h_low, 0.025);
+  EXPECT_EQ(order.fit->h_high, 0.1);
+  EXPECT_EQ(slope_of(*order.fit), "4.00");
 }
 
 TEST(Facts, CostIsInterpolatedBetweenNeighbours) {

@@ -46,13 +46,13 @@ TEST(ReportPapers, SectionsAppearWithTheirRunsAlone) {
   Folder const folder;
   std::string const without = markdown_of(full(), folder.path);
   for (auto const* word : {"quaternion_sync", "group_consensus", "dead_zone"}) EXPECT_FALSE(contains(without, word));
-  EXPECT_TRUE(contains(without, "## 9. Measured orders"));
+  EXPECT_TRUE(contains(without, "## 10. Measured orders"));
   EXPECT_TRUE(contains(without, "| gains | g1 strong tether, g2 weak tether | deduced |"));
   Folder const other{folder.path / "other"};
   std::string const with = markdown_of(sync(), other.path);
   expect_sound(other.path);
   EXPECT_TRUE(contains(with, "## 9. Spacecraft that synchronise"));
-  EXPECT_TRUE(contains(with, "## 10. Measured orders"));
+  EXPECT_TRUE(contains(with, "## 11. Measured orders"));
   EXPECT_TRUE(contains(with, "doi 10.16366/j.cnki.1000-2367.2022.06.001"));
   EXPECT_TRUE(contains(with, "| step and horizon | 0.1 s, 20 s | printed |"));
 }

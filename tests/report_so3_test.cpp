@@ -61,7 +61,7 @@ TEST(ReportSo3, TheSectionComesWithItsRunsAlone) {
   EXPECT_TRUE(contains(text, "doi 10.3873/j.issn.1000-1328.2018.06.009"));
   EXPECT_TRUE(contains(text, "| feed-forward rho | .8 of the command's rate | chosen |"));
   EXPECT_TRUE(contains(text, "| strong connection | 1-5-2-3-4-1 | deduced |"));
-  EXPECT_TRUE(contains(text, "## 10. Measured orders"));
+  EXPECT_TRUE(contains(text, "## 11. Measured orders"));
 }
 
 TEST(ReportSo3, TheOrderOfTheMethodsIsAMatterOfGains) {
