@@ -38,12 +38,16 @@ constexpr double left = 84, right = 18, top = 16, bottom = 54, title_height = 20
 constexpr double poster_width = 1000, poster_height = 420, poster_left = 96, poster_right = 22, poster_top = 46,
                  poster_bottom = 146, poster_key = 84;
 
-/// A gnuplot string. In single quotes nothing is expanded: no backticks, no macros, no escapes.
+/// A gnuplot expression of a string. In single quotes nothing is expanded: no backticks, no macros, no escapes. Gnuplot
+/// 5.4 stumbles over two doubled apostrophes in a row, so each stands in double quotes by itself.
 std::string in_quotes(std::string_view raw) {
   std::string out = "'";
   for (char const c : one_line(raw)) {
-    out += c;
-    if (c == '\'') out += c;
+    if (c == '\'') {
+      out += "'.\"'\".'";
+    } else {
+      out += c;
+    }
   }
   return out + "'";
 }

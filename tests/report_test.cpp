@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/render.hpp"
 #include "report/text.hpp"
 #include "tests/report_fixture.hpp"
 
@@ -210,6 +211,24 @@ TEST(Report, HostileNamesStayText) {
   if (!have_gnuplot()) return;
   EXPECT_TRUE(is_well_formed(slurp(folder.path / "figures" / "drift-1.svg")));
   EXPECT_TRUE(contains(slurp(folder.path / "figures" / "drift-1.svg"), "touch")) << "the name is shown as text";
+}
+
+TEST(Report, ApostrophesInARow) {
+  if (!have_gnuplot()) GTEST_SKIP() << "gnuplot is not on the PATH";
+  Folder const folder;
+  fs::create_directories(folder.path);
+  for (auto const* label : {"'", "''", "a''b", "'''a'''", "a'b", "it''s '' so"}) {
+    Figure figure;
+    figure.name = "quotes";
+    figure.panels.push_back({{label}, {label}, {{label, {}, {{1, 2}, {2, 3}}}}, false, 0, label});
+    draw(figure, folder.path);
+    ASSERT_TRUE(figure.svg) << label << ": " << figure.why_not << slurp(folder.path / "quotes.log");
+    // The two axes' labels, the title and the legend's entry.
+    std::string const shown = std::string(label) + "</t";
+    std::size_t found = 0;
+    for (auto at = figure.svg->find(shown); at != std::string::npos; at = figure.svg->find(shown, at + 1)) ++found;
+    EXPECT_GE(found, 4U) << label;
+  }
 }
 
 TEST(Report, AnUnwritableFolderIsAnError) {
