@@ -14,7 +14,9 @@
 #include <array>
 #include <cstdint>
 #include <span>
+
 #include "integrators/integrator.hpp"
+#include "integrators/registers.hpp"
 #include "problems/lanes.hpp"
 
 namespace polhode {
@@ -89,31 +91,6 @@ struct NoEnsembleWatch {
 template <class Method, class P>
 concept StepsFromPoint = Problem<P> && std::same_as<typename Method::template Memory<typename P::Space>, NoMemory>;
 
-/// Register sets that a kernel can be compiled for beside each other.
-enum class Registers { of_the_unit = register_bytes, avx2 = 32, avx512 = 64 };
-
-// Calls between functions for different registers must not pass lanes by value. In a kernel everything is inlined, but
-// only when the unit is optimised; what is marked noinline takes references.
-#if defined(__x86_64__) && !defined(__SSE3__) && defined(__OPTIMIZE__)
-inline constexpr bool chooses_registers = true;
-#define POLHODE_TARGET(arch) [[gnu::target(arch)]]
-#else  // a unit for a newer instruction set than every machine has uses that one
-inline constexpr bool chooses_registers = false;
-#define POLHODE_TARGET(arch)
-#endif
-
-/// The widest that this machine and this unit know.
-inline Registers widest_registers() {
-#if defined(__x86_64__) && !defined(__SSE3__) && defined(__OPTIMIZE__)
-  static Registers const widest = __builtin_cpu_supports("x86-64-v4")   ? Registers::avx512
-                                  : __builtin_cpu_supports("x86-64-v3") ? Registers::avx2
-                                                                        : Registers::of_the_unit;
-  return widest;
-#else
-  return Registers::of_the_unit;
-#endif
-}
-
 namespace detail {
 
 /// Blocks that take turns: the latency of one hides behind the others. Their states stay in the first-level cache.
@@ -143,21 +120,21 @@ struct EnsembleKernel {
     P const problem = make.template operator()<S>(bodies);
     return {bodies, problem, problem.initial()};
   }
-  // Once for every body, and code of all kinds: not for the flattened function.
   template <int... g>
-  [[gnu::noinline]] std::array<Block, sizeof...(g)> group_at(Bodies const& bodies,
-                                                             std::integer_sequence<int, g...>) const {
+  std::array<Block, sizeof...(g)> group_at(Bodies const& bodies, std::integer_sequence<int, g...>) const {
     return {block_at(BodyBlock{BodyBlock{bodies.first, bodies.last}.index(g * lanes), bodies.last})...};
   }
 
-  POLHODE_INLINE void go(Bodies const& bodies) const {
+  /// What is made and handed over is code of all kinds; the steps alone are for chosen registers.
+  template <class Steps>
+  void go(Bodies const& bodies, Steps const& steps) const {
     constexpr std::int64_t in_group = blocks_in_turn * lanes;
     for (std::int64_t first = bodies.first; first < bodies.last; first += in_group) {
       Bodies const rest{first, bodies.last};
       auto group = group_at(rest, std::make_integer_sequence<int, blocks_in_turn>{});
       std::int64_t const needed = (rest.last - first + lanes - 1) / lanes;
       std::span const used(group.data(), std::size_t(needed < blocks_in_turn ? needed : blocks_in_turn));
-      step(used);
+      steps(*this, used);
       for (Block const& block : used) hand_over(block);
     }
   }
@@ -182,7 +159,7 @@ struct EnsembleKernel {
     if constexpr (SampledProblem<P>) block.problem.sample(t, block.x);
     watch(block.bodies, t, block.problem, block.x);
   }
-  [[gnu::noinline]] void hand_over(Block const& block) const {
+  void hand_over(Block const& block) const {
     for (int lane = 0; lane < lanes && block.bodies.first + lane < block.bodies.last; ++lane) {
       Single const x = in_lane<Single>(block.x, lane);
       deliver(block.bodies.first + lane, x, all_finite(x) ? Status::ok : Status::diverged);
@@ -191,17 +168,21 @@ struct EnsembleKernel {
 };
 
 // One function for each register set, with all that it calls inlined.
-template <class Kernel>
-[[gnu::flatten]] void run_kernel(Kernel const& kernel, Bodies const& bodies) {
-  kernel.go(bodies);
+template <class Kernel, class Group>
+[[gnu::flatten, gnu::noinline]] void step_in_unit(Kernel const& kernel, Group const& group) {
+  kernel.step(group);
 }
-template <class Kernel>
-[[gnu::flatten]] POLHODE_TARGET("arch=x86-64-v3") void run_kernel_avx2(Kernel const& kernel, Bodies const& bodies) {
-  kernel.go(bodies);
+template <class Kernel, class Group>
+[[gnu::flatten, gnu::noinline]] POLHODE_TARGET("arch=x86-64-v3") void step_in_avx2(Kernel const& kernel,
+                                                                                   Group const& group) {
+  kernel.step(group);
+  POLHODE_LEAVE_TARGET();
 }
-template <class Kernel>
-[[gnu::flatten]] POLHODE_TARGET("arch=x86-64-v4") void run_kernel_avx512(Kernel const& kernel, Bodies const& bodies) {
-  kernel.go(bodies);
+template <class Kernel, class Group>
+[[gnu::flatten, gnu::noinline]] POLHODE_TARGET("arch=x86-64-v4") void step_in_avx512(Kernel const& kernel,
+                                                                                     Group const& group) {
+  kernel.step(group);
+  POLHODE_LEAVE_TARGET();
 }
 
 }  // namespace detail
@@ -216,16 +197,22 @@ template <class Kernel>
 /// Throws what these throw.
 template <class T = double, class Method, class Make, class Deliver, class Watch = NoEnsembleWatch>
 void run_ensemble(Method const& method, EnsembleRun const& run, Bodies const& bodies, Make const& make,
-                  Deliver const& deliver, Watch const& watch = {}, Registers registers = widest_registers()) {
+                  Deliver const& deliver, Watch const& watch = {},
+                  [[maybe_unused]] Registers registers = widest_registers()) {
   auto const over = [&]<int bytes>() {
     using S = Lanes<bytes / int(sizeof(T)), T, bytes>;
     return detail::EnsembleKernel<Method, S, Make, Deliver, Watch>{method, run, make, deliver, watch};
   };
   if constexpr (chooses_registers) {
-    if (registers == Registers::avx512) return detail::run_kernel_avx512(over.template operator()<64>(), bodies);
-    if (registers == Registers::avx2) return detail::run_kernel_avx2(over.template operator()<32>(), bodies);
+    if (registers == Registers::avx512)
+      return over.template operator()<64>().go(
+          bodies, [](auto const& kernel, auto const& group) { detail::step_in_avx512(kernel, group); });
+    if (registers == Registers::avx2)
+      return over.template operator()<32>().go(
+          bodies, [](auto const& kernel, auto const& group) { detail::step_in_avx2(kernel, group); });
   }
-  detail::run_kernel(over.template operator()<register_bytes>(), bodies);
+  over.template operator()<register_bytes>().go(
+      bodies, [](auto const& kernel, auto const& group) { detail::step_in_unit(kernel, group); });
 }
 
 }  // namespace polhode
