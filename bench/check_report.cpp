@@ -1,11 +1,9 @@
 #include "bench/check_report.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 
 namespace polhode::bench {
 namespace {
@@ -21,10 +19,8 @@ Line cells_of(Row const& row) {
   return {std::to_string(row.line), row.selector, row.field, row.bound, worst, std::string(name_of(row.verdict))};
 }
 
-std::string coloured(std::string const& text, Verdict verdict, bool colour) {
-  if (!colour) return text;
-  char const* code = verdict == Verdict::passed ? "32" : is_good(verdict) ? "33" : "31";
-  return fmt::format("\033[{}m{}\033[0m", code, text);
+results::Tone tone_of(Row const& row) {
+  return results::tone_of(name_of(row.verdict));
 }
 
 std::string count_of(std::vector<Row> const& rows) {
@@ -108,30 +104,26 @@ std::string markdown(std::string_view text) {
 
 }  // namespace
 
-std::string table_text(CheckSubject const& subject, std::vector<Row> const& rows, bool colour) {
-  Line const heads{"line", "selector", "field", "bound", "worst value", "verdict"};
-  std::vector<Line> lines;
-  for (Row const& row : rows) lines.push_back(cells_of(row));
-  std::array<std::size_t, columns.size()> widths{};
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    widths[i] = heads[i].size();
-    for (Line const& line : lines) widths[i] = std::max(widths[i], line[i].size());
+std::string table_text(CheckSubject const& subject, std::vector<Row> const& rows, results::Outlet const& outlet) {
+  std::vector<results::TextColumn> heads;
+  for (char const* title : columns) heads.push_back({title});
+  heads.front().number = true;
+  heads.back().keep = true;
+  std::vector<std::vector<results::TextCell>> lines;
+  for (Row const& row : rows) {
+    Line const cells = cells_of(row);
+    lines.emplace_back();
+    for (std::string const& cell : cells) lines.back().emplace_back(cell, results::Tone::plain);
+    lines.back().back().tone = tone_of(row);
   }
-  auto const draw = [&](Line const& line, std::string const& verdict) {
-    std::string text = fmt::format("{:>{}}", line[0], widths[0]);
-    for (std::size_t i = 1; i + 1 < line.size(); ++i) text += fmt::format("  {:<{}}", line[i], widths[i]);
-    return text + "  " + verdict + "\n";
-  };
-  std::string text = subject_text(subject) + "\n\n" + draw(heads, heads.back());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    text += draw(lines[i], coloured(lines[i].back(), rows[i].verdict, colour));
-  }
-  text += "\n";
+  std::string text = subject_text(subject) + "\n\n" + results::text_table(heads, lines, outlet) + "\n";
   for (Row const& row : rows) {
     if (is_good(row.verdict)) continue;
     std::string const place = fmt::format("{}:{}: ", subject.file, row.line);
     std::size_t const shown = std::min(row.failures.size(), most_failures_shown);
-    for (std::size_t i = 0; i < shown; ++i) text += place + coloured(row.failures[i], row.verdict, colour) + "\n";
+    for (std::size_t i = 0; i < shown; ++i) {
+      text += place + results::toned(row.failures[i], tone_of(row), outlet) + "\n";
+    }
     if (shown < row.failures.size()) text += fmt::format("{}and {} more\n", place, row.failures.size() - shown);
   }
   return text + count_of(rows) + "\n";
@@ -166,12 +158,6 @@ std::string markdown_text(CheckSubject const& subject, std::vector<Row> const& r
     for (std::string const& failure : row.failures) text += fmt::format("- {}\n", markdown(failure));
   }
   return text;
-}
-
-bool wants_colour(int descriptor) {
-  char const* refusal = std::getenv("NO_COLOR");
-  bool const refused = refusal != nullptr && *refusal != '\0';
-  return !refused && isatty(descriptor) != 0;
 }
 
 }  // namespace polhode::bench

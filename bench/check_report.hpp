@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "bench/check.hpp"
+#include "results/terminal.hpp"
 
 namespace polhode::bench {
 
@@ -16,13 +17,10 @@ struct CheckSubject {
   std::size_t records = 0, cells = 0;
 };
 
-/// An aligned table, then every failure, then the count. ANSI colours only if `colour`.
-std::string table_text(CheckSubject const& subject, std::vector<Row> const& rows, bool colour);
+/// An aligned table, then every failure, then the count.
+std::string table_text(CheckSubject const& subject, std::vector<Row> const& rows, results::Outlet const& outlet);
 /// One testsuite, one testcase for each row. Text that XML cannot hold is replaced.
 std::string junit_text(CheckSubject const& subject, std::vector<Row> const& rows);
 std::string markdown_text(CheckSubject const& subject, std::vector<Row> const& rows);
-
-/// True if `descriptor` is a terminal and the environment does not say NO_COLOR.
-bool wants_colour(int descriptor);
 
 }  // namespace polhode::bench

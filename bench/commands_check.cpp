@@ -150,7 +150,7 @@ int check(CheckOptions const& options) {
   }
   std::vector<Row> const rows = judge(checked.suite, checked.cells, vocabulary(), golden, checked.subject.file);
   require_something(checked, rows);
-  fmt::print("{}", table_text(checked.subject, rows, wants_colour(STDOUT_FILENO)));
+  fmt::print("{}", table_text(checked.subject, rows, results::outlet_of(STDOUT_FILENO)));
   if (!options.junit.empty()) write_file(options.junit, junit_text(checked.subject, rows));
   if (!options.markdown.empty()) write_file(options.markdown, markdown_text(checked.subject, rows));
   bool const good = std::ranges::all_of(rows, [](Row const& row) { return is_good(row.verdict); });
