@@ -10,6 +10,8 @@
 
 #include "bench/cell.hpp"
 #include "bench/provenance.hpp"
+#include "bench/reference.hpp"
+#include "bench/speed/speed.hpp"
 
 namespace {
 
@@ -21,8 +23,7 @@ constexpr double step_size = 0.01;  // [s]
 /// One solve of the problem's horizon with the typed method; the rate is in steps.
 void solve_cost(benchmark::State& state, TimedSolve& solve, double steps) {
   for (auto _ : state) benchmark::DoNotOptimize(solve.solve());
-  state.counters["per_step"] =
-      benchmark::Counter(steps * double(state.iterations()), benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  count_steps(state, steps);
 }
 
 /// What an Odeint user would write for the free body: a plain array and a lambda, nothing of ours.
@@ -51,15 +52,10 @@ void plain_odeint_rk4(benchmark::State& state) {
     for (long i = 0; i < steps; ++i) stepper.do_step(field, y, double(i) * step_size, step_size);
     benchmark::DoNotOptimize(y);
   }
-  state.counters["per_step"] = benchmark::Counter(double(steps) * double(state.iterations()),
-                                                  benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+  count_steps(state, double(steps));
 }
 
-/// Two benchmarks that are to be compared; names without "/repeats".
-struct Pair {
-  std::string what, ours, rival;
-};
-std::vector<Pair> const pairs{
+std::vector<Comparison> const comparisons{
     {"RK4 step, free body: polhode / Odeint on std::array", "step/free_body/quaternion/rk4",
      "plain/free_body/odeint_rk4"},
     {"RK4 step, free body: polhode / Odeint behind our face", "step/free_body/quaternion/rk4",
@@ -74,29 +70,42 @@ std::vector<Pair> const pairs{
      "network/quaternion_sync/quaternion/rk4/100"},
     {"CF4 on S3, the same", "network/quaternion_sync/s3/cf4/100000", "network/quaternion_sync/s3/cf4/100"},
     {"Gauss of 2 stages, the same", "network/quaternion_sync/quaternion/gauss2/100000",
-     "network/quaternion_sync/quaternion/gauss2/100"}};
+     "network/quaternion_sync/quaternion/gauss2/100"},
+    {"RK4 step, free body: its type forgotten at every evaluation / at every solve",
+     "erased/free_body/quaternion/rk4/evaluation", "step/free_body/quaternion/rk4"},
+    {"RK4 step, free body: its type forgotten at every solve / never", "step/free_body/quaternion/rk4",
+     "twin/free_body/rk4/generic"}};
 
-/// The usual table, and the medians for the ratios.
-class Reporter final : public benchmark::ConsoleReporter {
+/// What Google Benchmark prints in the format that was asked for, and the medians for the ratios.
+class Reporter final : public benchmark::BenchmarkReporter {
  public:
+  bool ReportContext(Context const& context) override { return printed_->ReportContext(context); }
   void ReportRuns(std::vector<Run> const& runs) override {
-    ConsoleReporter::ReportRuns(runs);
-    for (Run const& run : runs)
-      if (run.run_type == Run::RT_Aggregate && run.aggregate_name == "median" && run.iterations > 0)
-        median_[run.run_name.function_name] = run.cpu_accumulated_time / double(run.iterations);
+    printed_->ReportRuns(runs);
+    for (Run const& run : runs) {
+      if (run.run_type != Run::RT_Aggregate || run.aggregate_name != "median" || run.iterations <= 0) continue;
+      bool const by_the_wall = run.run_name.time_type.find("real_time") != std::string::npos;
+      median_[run.run_name.function_name] =
+          (by_the_wall ? run.real_accumulated_time : run.cpu_accumulated_time) / double(run.iterations);
+    }
   }
-  void print_ratios() {
+  void Finalize() override { printed_->Finalize(); }
+
+  /// To stdout below the table; to stderr if what stdout gets is for machines.
+  void print_ratios(std::vector<Comparison> const& all) const {
+    std::FILE* const out = dynamic_cast<benchmark::ConsoleReporter*>(printed_.get()) ? stdout : stderr;
     bool first = true;
-    for (Pair const& pair : pairs) {
+    for (Comparison const& pair : all) {
       auto const ours = median_.find(pair.ours), rival = median_.find(pair.rival);
       if (ours == median_.end() || rival == median_.end()) continue;
-      if (first) fmt::print("\nratios of median CPU times in this run (below 1: the first is faster)\n");
+      if (first) fmt::print(out, "\nratios of median times in this run (below 1: the first is faster)\n");
       first = false;
-      fmt::print("{:<75} {:.3f}\n", pair.what, ours->second / rival->second);
+      fmt::print(out, "{:<85} {:.3f}\n", pair.what, ours->second / rival->second);
     }
   }
 
  private:
+  std::unique_ptr<benchmark::BenchmarkReporter> printed_{benchmark::CreateDefaultDisplayReporter()};
   std::map<std::string, double> median_;  ///< seconds per iteration
 };
 
@@ -154,6 +163,42 @@ void register_networks(std::vector<std::unique_ptr<TimedSolve>>& keep) {
     }
 }
 
+/// The cell of a solve from the catalogue's names alone.
+results::Cell cell_of(std::string_view problem, std::string_view formulation, std::string_view integrator, double h) {
+  results::Cell cell;
+  cell.problem = problem;
+  cell.formulation = formulation;
+  cell.integrator = integrator;
+  cell.h = h;
+  return cell;
+}
+
+/// The free body's field behind a virtual call at every evaluation.
+void register_erased(std::vector<std::unique_ptr<TimedSolve>>& keep) {
+  using M = RigidBody<FlatQuaternion<double>>;
+  PreparedCell const prepared = prepare(cell_of("free_body", "quaternion", "rk4", step_size));
+  auto field = std::get<std::unique_ptr<Erased<M>>>(prepared.problem->in("quaternion"));
+  auto solve = method_named<M>("rk4").timed(std::move(field), prepared.plan);
+  double const steps = prepared.cell.t_end / step_size;
+  benchmark::RegisterBenchmark("erased/free_body/quaternion/rk4/evaluation", [&solve = *solve, steps](auto& state) {
+    solve_cost(state, solve, steps);
+  })->Unit(benchmark::kMicrosecond);
+  keep.push_back(std::move(solve));
+}
+
+/// What a changed free body costs before its first run: its reference by Taylor series, and the proof by Gauss.
+void register_certification() {
+  benchmark::RegisterBenchmark("certify/free_body", [](benchmark::State& state) {
+    PreparedCell const prepared = prepare(cell_of("free_body", "quaternion", "rk4", step_size));
+    double bar = 0;
+    for (auto _ : state) {
+      Reference const reference = Reference::solve(*prepared.problem, prepared.schedule);
+      bar = certify(prepared.physics, *prepared.problem, prepared.schedule, reference).bar;
+    }
+    state.counters["bar"] = bar;
+  })->Unit(benchmark::kMillisecond);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -175,11 +220,18 @@ int main(int argc, char** argv) {
   register_steps(keep);
   register_networks(keep);
   benchmark::RegisterBenchmark("plain/free_body/odeint_rk4", plain_odeint_rk4)->Unit(benchmark::kMicrosecond);
+  register_erased(keep);
+  register_certification();
+  std::vector<Comparison> compared = comparisons;
+  add_twins(compared);
+  add_worst_cases();
+  add_ensembles(compared);
+  add_odeint_loops();
   Reporter reporter;
   if (benchmark::RunSpecifiedBenchmarks(&reporter) == 0) {
     std::fputs("polhode-bench: --benchmark_filter matches nothing\n", stderr);
     return 3;
   }
-  reporter.print_ratios();
+  reporter.print_ratios(compared);
   return 0;
 }

@@ -35,12 +35,12 @@ struct SampledLimitedPd : LimitedPd<S> {
 
 /// The slew of the default body from its default tumble. Two of three components are at their limits at first.
 template <Scalar S, template <class> class A = FlatQuaternion, class Control = LimitedPd<S>>
-auto limited_slew() {
+auto limited_slew(BodyParameters const& body = {}) {
   using R = Real<S>;
   Control control;
   control.law = {R(4.0), R(20.0)};
   control.torque_max = R(3.0);
-  return controlled_body<S, A, true>(BodyParameters{}, control);
+  return controlled_body<S, A, true>(body, control);
 }
 
 }  // namespace polhode::bench
