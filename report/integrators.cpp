@@ -34,7 +34,7 @@ struct Quantity {
 constexpr Quantity quantities[] = {{"norm", "norm", "", &Record::norm_drift_max},
                                    {"energy", "energy", "", &Record::energy_drift_max},
                                    {"momentum", "|L|", "", &Record::momentum_drift_max},
-                                   {"momentum_direction", "direction of L", " rad", &Record::momentum_direction_max}};
+                                   {"momentum_direction", "direction of L", " [rad]", &Record::momentum_direction_max}};
 
 /// What is known of one integrator, and where it was measured.
 struct Subject {
@@ -127,8 +127,8 @@ std::vector<Subject> subjects_of(Facts const& facts) {
   std::vector<Subject> subjects;
   for (auto& [name, subject] : found) {
     subject.name = name;
-    auto const said = facts.contents.catalogue.find(name);
-    if (said != facts.contents.catalogue.end()) subject.facts = &said->second;
+    auto const known = facts.contents.catalogue.find(name);
+    if (known != facts.contents.catalogue.end()) subject.facts = &known->second;
     find_sweep(subject, facts);
     find_step(subject);
     find_free(subject, facts);
@@ -149,30 +149,14 @@ std::string ends_of(Subject const& subject) {
   return fmt::format("{}", fmt::join(words, ", "));
 }
 
-/// "claimed: norm 3e-16, energy 2e-15; not claimed: direction of L 4e-6 rad; claimed, not measured: symmetric".
-std::string keeping_of(Subject const& subject) {
-  std::vector<std::string> claimed, other, untested;
-  for (Quantity const& q : quantities) {
-    auto const drift = subject.free ? finite(subject.free->*q.drift) : std::nullopt;
-    bool const is_claimed = subject.claims(q.claim);
-    if (drift) {
-      (is_claimed ? claimed : other).push_back(fmt::format("{} {}{}", q.name, significant(*drift, 2), q.unit));
-    } else if (is_claimed) {
-      untested.emplace_back(q.name);
-    }
-  }
-  for (std::string_view const structure : {"symplectic", "symmetric"}) {
-    if (subject.claims(structure)) untested.emplace_back(structure);
-  }
-  std::vector<std::string> parts;
-  auto const add = [&](std::string_view label, std::vector<std::string> const& words) {
-    if (!words.empty()) parts.push_back(fmt::format("{}{}", label, fmt::join(words, ", ")));
-  };
-  add("claimed: ", claimed);
-  add(subject.facts ? "not claimed: " : "", other);
-  if (!subject.free) parts.emplace_back(not_measured);
-  add(subject.free ? "claimed, not measured: " : "claimed: ", untested);
-  return fmt::format("{}", fmt::join(parts, "; "));
+/// "1.8e-16, claimed": the largest drift of a quantity, and whether the catalogue claims that it is kept.
+Entry keeping_of(Subject const& subject, Quantity const& q) {
+  auto const drift = subject.free ? finite(subject.free->*q.drift) : std::nullopt;
+  bool const is_claimed = subject.claims(q.claim);
+  if (!drift) return is_claimed ? fmt::format("claimed, {}", not_measured) : not_measured;
+  Entry entry = number(drift, 2);
+  if (is_claimed) entry.text += ", claimed";
+  return entry;
 }
 
 /// With the problem and the step; exact in the CSV file.
@@ -191,25 +175,73 @@ std::string place_of(Subject const& subject) {
   return fmt::format("{}{}{}, {}", c.problem, c.variant.empty() ? "" : " ", c.variant, c.formulation);
 }
 
-std::vector<Entry> row_of(Subject const& s) {
-  bool const is_known = s.order && s.order->points >= least_points;
-  auto const text = [&](std::string results::IntegratorFacts::*member) {
-    return s.facts && !(s.facts->*member).empty() ? Entry(s.facts->*member) : Entry(absent);
-  };
-  std::vector<Entry> row{s.name,
-                         text(&results::IntegratorFacts::family),
-                         s.facts && s.facts->order ? Entry(std::to_string(*s.facts->order)) : Entry(absent),
-                         is_known ? Entry(slope_of(*s.order), exact(s.order->slope)) : Entry(absent),
-                         is_known ? half_width_of(*s.order) : Entry(absent),
-                         s.order ? Entry(std::to_string(s.order->points)) : Entry(absent)};
-  row.emplace_back(place_of(s));
-  row.push_back(evaluations_of(s));
-  row.emplace_back(keeping_of(s));
-  row.emplace_back(s.free ? fmt::format("{}, {}", s.free->of.formulation, control_of(s.free->of)) : absent);
-  for (Quantity const& q : quantities) row.push_back(number(s.free ? s.free->*q.drift : std::nullopt));
-  row.push_back(text(&results::IntegratorFacts::pitfall));
-  row.push_back(text(&results::IntegratorFacts::source));
-  return row;
+Entry said(Subject const& s, std::string results::IntegratorFacts::*member) {
+  return s.facts && !(s.facts->*member).empty() ? Entry(s.facts->*member) : Entry(absent);
+}
+
+Table order_table(std::vector<Subject> const& subjects) {
+  Table table{.name = "integrators",
+              .caption = fmt::format("Order, nominal and measured with fixed steps, and evaluations of the right-hand "
+                                     "side. {} is what does not apply or is not known.",
+                                     absent),
+              .columns = {{"integrator"},
+                          {"family"},
+                          {"order", true},
+                          {"measured", true},
+                          {"± 95%", true},
+                          {"points", true},
+                          {"order measured on"},
+                          {"evaluations per step"}},
+              .rows = {}};
+  for (Subject const& s : subjects) {
+    bool const is_known = s.order && s.order->points >= least_points;
+    table.rows.push_back({s.name, said(s, &results::IntegratorFacts::family),
+                          s.facts && s.facts->order ? Entry(std::to_string(*s.facts->order)) : Entry(absent),
+                          is_known ? Entry(slope_of(*s.order), exact(s.order->slope)) : Entry(absent),
+                          is_known ? half_width_of(*s.order) : Entry(absent),
+                          s.order ? Entry(std::to_string(s.order->points)) : Entry(absent), place_of(s),
+                          evaluations_of(s)});
+  }
+  return table;
+}
+
+Table kept_table(std::vector<Subject> const& subjects) {
+  Table table{.name = "integrators-kept",
+              .caption = fmt::format("What each keeps of a free body: the largest drift, energy and |L| relative to "
+                                     "their initial values, at the step nearest {} s, where accuracy alone keeps "
+                                     "little; \"claimed\" if the catalogue says that it is kept. Symplectic and "
+                                     "symmetric are claims alone, which no drift measures.",
+                                     significant(coarse_step)),
+              .columns = {{"integrator"}},
+              .rows = {}};
+  for (Quantity const& q : quantities) table.columns.push_back({fmt::format("{}{}", q.name, q.unit), true});
+  table.columns.insert(table.columns.end(), {{"claimed structure"}, {"run"}, {"claims", false, true}});
+  for (Subject const& s : subjects) {
+    std::vector<Entry> row{s.name};
+    for (Quantity const& q : quantities) row.push_back(keeping_of(s, q));
+    std::vector<std::string> structure;
+    for (auto const* what : {"symplectic", "symmetric"}) {
+      if (s.claims(what)) structure.emplace_back(what);
+    }
+    row.emplace_back(structure.empty() ? absent : fmt::format("{}", fmt::join(structure, ", ")));
+    row.emplace_back(s.free ? fmt::format("{}, {}", s.free->of.formulation, control_of(s.free->of)) : absent);
+    row.emplace_back(s.facts ? fmt::format("{}", fmt::join(s.facts->preserves, " ")) : "");
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+Table source_table(std::vector<Subject> const& subjects) {
+  Table table{.name = "integrators-sources",
+              .caption = "Where each is from, and what to beware of.",
+              .columns = {{"integrator"}, {"source"}, {"pitfall"}},
+              .rows = {}};
+  for (Subject const& s : subjects) {
+    if (!s.facts) continue;
+    table.rows.push_back(
+        {s.name, said(s, &results::IntegratorFacts::source), said(s, &results::IntegratorFacts::pitfall)});
+  }
+  return table;
 }
 
 /// Claims that a run of the free body contradicts.
@@ -219,7 +251,7 @@ std::vector<std::string> contradictions(std::vector<Subject> const& subjects) {
     for (Quantity const& q : quantities) {
       auto const drift = s.free ? finite(s.free->*q.drift) : std::nullopt;
       if (drift && *drift > kept && s.claims(q.claim)) {
-        words.push_back(fmt::format("{} {} ({}{})", s.name, q.name, significant(*drift, 2), q.unit));
+        words.push_back(fmt::format("{} {}{} ({})", s.name, q.name, q.unit, significant(*drift, 2)));
       }
     }
   }
@@ -260,31 +292,9 @@ void add_integrators(Document& document, Facts const& facts) {
       "the "
       "method moves a free body without asking for the torque. \"{}\" is what the records do not tell.",
       least_points, significant(usual_step), not_measured));
-  Table table{.name = "integrators",
-              .caption = fmt::format("What is kept is the largest drift on the free body, energy and |L| relative to "
-                                     "their initial values, against what the catalogue claims; at the step nearest "
-                                     "{} s, where accuracy alone keeps little. {} is what does not apply or is not "
-                                     "known.",
-                                     significant(coarse_step), absent),
-              .columns = {{"integrator"},
-                          {"family"},
-                          {"order", true},
-                          {"measured", true},
-                          {"± 95%", true},
-                          {"points", true},
-                          {"order measured on"},
-                          {"evaluations per step"},
-                          {"keeps"},
-                          {"on the free body with"},
-                          {"norm", true, true},
-                          {"energy", true, true},
-                          {"|L|", true, true},
-                          {"direction of L [rad]", true, true},
-                          {"pitfall"},
-                          {"source"}},
-              .rows = {}};
-  for (Subject const& s : subjects) table.rows.push_back(row_of(s));
-  document.add(std::move(table));
+  document.add(order_table(subjects));
+  document.add(kept_table(subjects));
+  if (Table sources = source_table(subjects); !sources.rows.empty()) document.add(std::move(sources));
   say_what_is_unknown(document, facts, subjects);
   auto const wrong = contradictions(subjects);
   bool const any_tested =
@@ -293,7 +303,7 @@ void add_integrators(Document& document, Facts const& facts) {
     document.say(fmt::format("Claimed to be kept, and off by more than {} here: {}.", significant(kept),
                              fmt::join(wrong, ", ")));
   } else if (any_tested) {
-    document.say(fmt::format("All that is claimed to be kept is kept within {} on the free body, wherever it was run.",
+    document.say(fmt::format("All that is claimed to be kept is kept within {} in these runs of the free body.",
                              significant(kept)));
   }
   add_conservation(document, facts);
