@@ -213,6 +213,27 @@ TEST(Invariants, ATurnedBodyTurnsTheMomentumAlone) {
   EXPECT_LT(*record.momentum_drift_max, 1e-32);
 }
 
+TEST(Invariants, AgainstTimeKeepTheirSigns) {
+  double const less = -1e-6;
+  Metrics metrics = metrics_of_the_ball();
+  for (int k = 0; k <= steps; ++k) {
+    double const t = t_end * k / steps;
+    bool const late = t > t_end / 2;
+    metrics.see(sight(t, late ? turned(t, small) : exact(t), scaled(Quad(late ? 1 + less : 1), omega)));
+  }
+  auto const series = metrics.invariant_series("a cell");
+  EXPECT_EQ(series.name, "invariants");
+  EXPECT_EQ(series.columns, (std::vector<std::string>{"t", "energy", "momentum", "momentum_direction"}));
+  ASSERT_GE(series.rows.size(), std::min<std::size_t>(steps, 500));
+  ASSERT_LE(series.rows.size(), 502u);
+  EXPECT_EQ(series.rows.front(), (std::vector<double>{0, 0, 0, 0}));
+  auto const& end = series.rows.back();
+  EXPECT_EQ(end[0], t_end);
+  EXPECT_NEAR(end[1], 2 * less + less * less, 1e-15);
+  EXPECT_NEAR(end[2], less, 1e-15);
+  EXPECT_NEAR(end[3] / small, 1, 1e-13);
+}
+
 TEST(Invariants, AnUnnormalisedQuaternionDoesNotChangeThem) {
   Quat<Quad> const tilt = turned(0, 1);  // so that the momentum is along no axis
   auto const record = record_of([&](double t) { return sight(t, scaled(Quad(1 + 0.01 * t), tilt * exact(t))); });
