@@ -68,6 +68,7 @@ TEST(CliRun, WritesOnceAndSkipsWhatIsDone) {
   EXPECT_EQ(run_of(folder, "tiny.toml"), "polhode-results/tiny: 4 cells: 3 ok, 1 refused, 0 failed, 0 already done\n");
   fs::path const results = folder.path / "polhode-results/tiny";
   EXPECT_EQ(text_of(results / "suite.toml"), untimed);
+  EXPECT_EQ(text_of(results / "catalogue.json"), polhode(folder, "list integrators --json").out);
   auto const first = deterministic(results);
   EXPECT_EQ(first.size(), 4U);
   for (auto const& [cell, run] : first) {
