@@ -33,6 +33,10 @@ struct NoTorque {
   using Scalar = S;
   static constexpr bool sampled = false;
   Vec3<S> torque(S const&, Quat<S> const&, Vec3<S> const&) const { return {S(0.0), S(0.0), S(0.0)}; }
+  template <class T>
+  NoTorque<T> over() const {
+    return {};
+  }
 };
 
 }  // namespace polhode

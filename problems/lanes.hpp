@@ -94,7 +94,13 @@ struct Lanes {
   Lanes() = default;
   /// x in every lane.
   POLHODE_INLINE Lanes(T x) {
-    unroll<parts>([&](auto i) POLHODE_LAMBDA { part[i] = x - Part{}; });
+    // By way of integers: in a kernel for another instruction set than its unit's, g++ 12 would store the filled vector
+    // lane by lane. (An asm against that hides constants from the optimiser, too.)
+    using Bits = typename Layout::MaskPart;
+    typename Layout::Integer bits;
+    std::memcpy(&bits, &x, sizeof x);
+    Part const filled = Part(bits - Bits{});
+    unroll<parts>([&](auto i) POLHODE_LAMBDA { part[i] = filled; });
   }
   POLHODE_INLINE Lanes(double x) requires(!std::same_as<T, double>) : Lanes(T(x)) {}
 
@@ -125,9 +131,23 @@ struct Lanes {
   friend POLHODE_INLINE Lanes operator*(Lanes const& a, Lanes const& b) {
     return detail::by_parts<Lanes>([](auto& r, auto const& x, auto const& y) POLHODE_LAMBDA { r = x * y; }, a, b);
   }
-  /// Broadcast in the product itself: a kernel for another instruction set than its unit's would do it lane by lane.
+  // With a number the same everywhere: spread in the operation itself, which stays cheap in such kernels.
+  friend POLHODE_INLINE Lanes operator+(T const& c, Lanes const& b) {
+    return detail::by_parts<Lanes>([&](auto& r, auto const& y) POLHODE_LAMBDA { r = c + y; }, b);
+  }
+  friend POLHODE_INLINE Lanes operator+(Lanes const& a, T const& c) { return c + a; }
+  friend POLHODE_INLINE Lanes operator-(T const& c, Lanes const& b) {
+    return detail::by_parts<Lanes>([&](auto& r, auto const& y) POLHODE_LAMBDA { r = c - y; }, b);
+  }
+  friend POLHODE_INLINE Lanes operator-(Lanes const& a, T const& c) {
+    return detail::by_parts<Lanes>([&](auto& r, auto const& x) POLHODE_LAMBDA { r = x - c; }, a);
+  }
   friend POLHODE_INLINE Lanes operator*(T const& c, Lanes const& b) {
     return detail::by_parts<Lanes>([&](auto& r, auto const& y) POLHODE_LAMBDA { r = c * y; }, b);
+  }
+  friend POLHODE_INLINE Lanes operator*(Lanes const& a, T const& c) { return c * a; }
+  friend POLHODE_INLINE Lanes operator/(T const& c, Lanes const& b) {
+    return detail::by_parts<Lanes>([&](auto& r, auto const& y) POLHODE_LAMBDA { r = c / y; }, b);
   }
   friend POLHODE_INLINE Lanes operator/(Lanes const& a, Lanes const& b) {
     return detail::by_parts<Lanes>([](auto& r, auto const& x, auto const& y) POLHODE_LAMBDA { r = x / y; }, a, b);
@@ -242,21 +262,21 @@ struct SinCosLanes {
 
   explicit POLHODE_INLINE SinCosLanes(L const& x) {
     constexpr double to_whole = 0x1.8p52;  // added, it rounds to a whole number
-    L const shifted = x * L(0.63661977236758134308) + L(to_whole), k = shifted - L(to_whole);
-    L const first = x - k * L(1.57079632673412561417), second = k * L(6.07710050630396597660e-11);
+    L const shifted = x * 0.63661977236758134308 + to_whole, k = shifted - to_whole;
+    L const first = x - k * 1.57079632673412561417, second = k * 6.07710050630396597660e-11;
     L const head = first - second;
-    L const taken = k * L(2.02226624879595063154e-21) - ((first - head) - second);
+    L const taken = k * 2.02226624879595063154e-21 - ((first - head) - second);
     L const r = head - taken, tail = (head - r) - taken;  // r + tail to more digits than one number has
     L const z = r * r;
     L const odd_part =
         polynomial_of(z, 1.58969099521155010221e-10, -2.50507602534068634195e-08, 2.75573137070700676789e-06,
                       -1.98412698298579493134e-04, 8.33333333332248946124e-03);
-    L const odd = r - ((z * (L(0.5) * tail - z * r * odd_part) - tail) - z * r * L(-1.66666666666666324348e-01));
-    L const half = L(0.5) * z, rest = L(1.0) - half;
+    L const odd = r - ((z * (0.5 * tail - z * r * odd_part) - tail) - z * r * -1.66666666666666324348e-01);
+    L const half = 0.5 * z, rest = 1.0 - half;
     L const even_part =
         polynomial_of(z, -1.13596475577881948265e-11, 2.08757232129817482790e-09, -2.75573143513906633035e-07,
                       2.48015872894767294178e-05, -1.38888888888741095749e-03, 4.16666666666666019037e-02);
-    L const even = rest + ((L(1.0) - rest) - half + (z * z * even_part - r * tail));
+    L const even = rest + ((1.0 - rest) - half + (z * z * even_part - r * tail));
     // The quadrant is in the last bits of the shifted number.
     unroll<L::parts>([&](auto i) POLHODE_LAMBDA {
       using Bits = typename L::Layout::MaskPart;
@@ -269,8 +289,8 @@ struct SinCosLanes {
   }
   template <class... C>
   static POLHODE_INLINE L polynomial_of(L const& z, C... c) {
-    L r(0.0);
-    ((r = r * z + L(c)), ...);
+    L r = 0.0 * z;
+    ((r = r * z + c), ...);
     return r;
   }
 };

@@ -77,6 +77,15 @@ template <class C>
   }
 inline constexpr bool feels_rate<C> = C::feels_rate;
 
+/// A torque that does not change.
+template <Scalar S>
+struct HeldTorque {
+  using Scalar = S;
+  static constexpr bool sampled = false, feels_rate = false;
+  Vec3<S> held;  ///< [N m, body]
+  POLHODE_INLINE Vec3<S> torque(S const&, Quat<S> const&, Vec3<S> const&) const { return held; }
+};
+
 /// The field: attitude space A over scalar S, an inertia and a controller.
 /// state   attitude x omega [rad/s, body]
 template <Scalar S, template <class> class A, class Inertia, Controller Control>
@@ -100,25 +109,49 @@ struct ControlledBody {
   }
   State initial() const { return start; }
 
-  /// What methods for rigid bodies ask: J [kg m^2, body]; the torque [N m, body], of sampled control the one that is
-  /// held; whether there is any, and whether it depends on the body rate.
-  bool is_rigid_body() const { return inertia.sign == Real<S>(1.0); }  // not with the sign that one paper prints
-  Mat3<Real<S>> inertia_matrix() const { return inertia.matrix(); }
-  Vec3<S> torque(S const& t, State const& x) const {
-    if constexpr (Control::sampled)
-      return held;
-    else
-      return control.torque(t, A<S>::attitude(x.first), x.second);
-  }
-  static constexpr bool torque_free() { return std::same_as<Control, NoTorque<S>>; }
-  static constexpr bool torque_feels_rate() { return !torque_free() && !Control::sampled && feels_rate<Control>; }
+  /// The field as it is now over the scalar T, which has the same numbers as parameters: lanes of S. Controllers that
+  /// are asked at every stage have over<T>(), too.
+  template <Scalar T>
+    requires std::same_as<Real<T>, Real<S>> &&
+        (Control::sampled || requires(Control const& c) { c.template over<T>(); }) POLHODE_INLINE auto over() const {
+      auto const everywhere = [](Vec3<S> const& v) POLHODE_LAMBDA { return Vec3<T>{T(v.x), T(v.y), T(v.z)}; };
+      Pair<Point<A<T>>, Vec3<T>> begin;
+      Point<A<T>>::each([](T& to, S const& from) POLHODE_LAMBDA { to = T(from); }, begin.first, start.first);
+      begin.second = everywhere(start.second);
+      if constexpr (Control::sampled)
+        return ControlledBody<T, A, Inertia, HeldTorque<T>>{inertia, {everywhere(held)}, begin, {}};
+      else
+        return ControlledBody<T, A, Inertia, decltype(control.template over<T>())>{
+            inertia, control.template over<T>(), begin, {}};
+    }
 
-  void sample(Real<S> const& t, State const& x) requires(Control::sampled) {
-    held = control.torque(t, A<S>::attitude(x.first), x.second);
-  }
-  void show(State const& x, std::span<double> out) const requires ShowingController<Control> {
-    control.show(A<S>::attitude(x.first), x.second, out);
-  }
+    /// What methods for rigid bodies ask: J [kg m^2, body]; the torque [N m, body], of sampled control the one that is
+    /// held; whether there is any, and whether it depends on the body rate.
+    bool is_rigid_body() const {
+      return inertia.sign == Real<S>(1.0);
+    }  // not with the sign that one paper prints
+    Mat3<Real<S>> inertia_matrix() const {
+      return inertia.matrix();
+    }
+    Vec3<S> torque(S const& t, State const& x) const {
+      if constexpr (Control::sampled)
+        return held;
+      else
+        return control.torque(t, A<S>::attitude(x.first), x.second);
+    }
+    static constexpr bool torque_free() {
+      return std::same_as<Control, NoTorque<S>>;
+    }
+    static constexpr bool torque_feels_rate() {
+      return !torque_free() && !Control::sampled && feels_rate<Control>;
+    }
+
+    void sample(Real<S> const& t, State const& x) requires(Control::sampled) {
+      held = control.torque(t, A<S>::attitude(x.first), x.second);
+    }
+    void show(State const& x, std::span<double> out) const requires ShowingController<Control> {
+      control.show(A<S>::attitude(x.first), x.second, out);
+    }
 };
 
 /// What every one-body problem has: inertia and initial data, as parameters.

@@ -20,6 +20,10 @@ struct PdController {
     auto const towards = select(q.w < S(0.0), k_p, -k_p);
     return towards * vec(q) - k_d * omega;
   }
+  template <class T>
+  PdController<T> over() const {
+    return {k_p, k_d};
+  }
 };
 
 /// The same law on a gyrostat, whose wheels hold a constant angular momentum h in body axes.
@@ -36,6 +40,10 @@ struct GyrostatPd {
 
   POLHODE_INLINE Vec3<S> torque(S const& t, Quat<S> const& q, Vec3<S> const& omega) const {
     return cross(wheel, omega) + law.torque(t, q, omega);
+  }
+  template <class T>
+  GyrostatPd<T> over() const {
+    return {law.template over<T>(), {T(wheel.x), T(wheel.y), T(wheel.z)}};
   }
 };
 

@@ -1,0 +1,291 @@
+#pragma once
+/// Gauss collocation with its stages in the lanes of vector registers, for one rigid body on flat quaternions, in a
+/// frame that turns with it: equal steps, and steps of its own choice.
+///
+/// Long steps of high order at a small price: on smooth problems the least time of all to 1e-6 and beyond. Does not pay
+/// where steps must be short, as under fast sampling. Keeps the norm, and of a free body energy and |L|.
+///
+/// Adaptive steps: the size e of the last Legendre coefficient of the slopes falls as h^s, the method's error as
+/// h^(2s), so e is held to a constant times tol^(1/2); tol is rtol + atol, for a rotation is of size 1. The stage
+/// iteration ends a factor below the tolerance.
+///
+/// The kernel is compiled for several instruction sets beside each other, and each solve takes the widest that the
+/// machine has: with the same result to the last bit, as long as products and sums are not fused (-ffp-contract=off).
+#include <algorithm>
+#include <cmath>
+
+#include "integrators/gauss_lawson.hpp"
+#include "integrators/integrator.hpp"
+
+namespace polhode {
+
+namespace detail {
+/// Runs of one body by LawsonStep, in equal steps or controlled ones.
+template <int s, Problem P>
+class LawsonRun {
+  static_assert(s == 4 || s == 8, "stages fill their registers");
+  using M = typename P::Space;
+  using X = Point<M>;
+
+ public:
+  void restart() { memory_.restart(); }
+  Projections projections() const { return projections_; }
+
+ protected:
+  /// Not where the field is evaluated lane by lane anyway: the result would be the same, and the time.
+  static constexpr bool chooses = chooses_registers && requires(P const& p) { p.template over<Lanes<s>>(); };
+
+  LawsonRun(P const& problem, NormPolicy policy) : problem_(&problem), policy_(policy) {}
+
+  /// Whether the torque may depend on the body rate: then its mean damping is asked for.
+  bool damps() const {
+    if constexpr (requires(P const& p) { p.torque_feels_rate(); })
+      return problem_->torque_feels_rate();
+    else
+      return true;
+  }
+  template <class Result>
+  POLHODE_INLINE void accept(Result const& result, double h, X& x) {
+    x = result.x;
+    memory_.carry = result.carry;
+    memory_.slopes = result.slopes;
+    memory_.last_step = h;
+    if (policy_ != NormPolicy::none) [[unlikely]]
+      projections_.template apply<M>(x, policy_);
+  }
+
+  P const* problem_;
+  NormPolicy policy_;
+  Registers registers_ = widest_registers();
+  LawsonMemory<s> memory_;
+  Projections projections_;
+};
+}  // namespace detail
+
+/// Equal steps of h. fails   Status::nonlinear_fail where a step's sweeps do not come to rest, Status::diverged
+template <int s, Problem P>
+class LawsonFixed : public detail::LawsonRun<s, P> {
+  using Base = detail::LawsonRun<s, P>;
+  using X = Point<typename P::Space>;
+
+ public:
+  LawsonFixed(P const& problem, FixedStep control, NormPolicy policy, SweepRule const& rule)
+      : Base(problem, policy), h_(control.h), rule_(rule) {}
+
+  Status advance(X& x, double t, double t_end) {
+    auto const whole = std::int64_t(std::floor((t_end - t) / h_ + 1e-9));
+    double const rest = t_end - t - double(whole) * h_;
+    run(x, t, h_, whole);
+    if (!(rest / h_ < 1e-9)) run(x, t + double(whole) * h_, rest, 1);
+    return health_of(x);
+  }
+  /// One step to t_end, however long.
+  Status one_step(X& x, double t, double t_end) {
+    run(x, t, t_end - t, 1);
+    return health_of(x);
+  }
+  Work work() const {
+    Work work;
+    work.steps = steps_;
+    work.iterations = memory_.iterations;
+    return work;
+  }
+
+ private:
+  using Base::damps, Base::memory_, Base::problem_, Base::registers_;
+
+  Status health_of(X const& x) const {
+    if (!all_finite(x)) return Status::diverged;
+    return memory_.unconverged ? Status::nonlinear_fail : Status::ok;
+  }
+  void run(X& x, double t, double h, std::int64_t n) {
+    steps_ += n;
+    if constexpr (Base::chooses) {
+      if (registers_ == Registers::avx512) return run_avx512(x, t, h, n);
+      if (registers_ == Registers::avx2) return run_avx2(x, t, h, n);
+    }
+    run_here(x, t, h, n);
+  }
+  template <int bytes>
+  POLHODE_INLINE void loop(X& x, double t, double h, std::int64_t n) {
+    using Step = LawsonStep<s, bytes>;
+    auto const field = in_lanes<typename Step::L>(*problem_);
+    bool const feels = damps();
+    X y = x;
+    for (std::int64_t i = 0; i < n; ++i) {
+      auto const result = Step::step(field, feels, t + double(i) * h, h, y, memory_, rule_, false);
+      if (!result.solved) [[unlikely]]
+        memory_.unconverged = true;
+      this->accept(result, h, y);
+    }
+    x = y;
+  }
+  [[gnu::flatten, gnu::noinline]] void run_here(X& x, double t, double h, std::int64_t n) {
+    loop<register_bytes>(x, t, h, n);
+  }
+  POLHODE_TARGET("arch=x86-64-v3")
+  [[gnu::flatten, gnu::noinline]] void run_avx2(X& x, double t, double h, std::int64_t n) { loop<32>(x, t, h, n); }
+  POLHODE_TARGET("arch=x86-64-v4")
+  [[gnu::flatten, gnu::noinline]] void run_avx512(X& x, double t, double h, std::int64_t n) { loop<64>(x, t, h, n); }
+
+  double h_;
+  SweepRule rule_;
+  std::int64_t steps_ = 0;
+};
+
+/// Steps of its own choice. fails   Status::step_underflow below 10 ulp of t, Status::nonlinear_fail if that is because
+/// stages cannot be solved, Status::max_steps after `most` trials in one advance, Status::diverged
+template <int s, Problem P>
+class LawsonControlled : public detail::LawsonRun<s, P> {
+  using Base = detail::LawsonRun<s, P>;
+  using X = Point<typename P::Space>;
+
+ public:
+  LawsonControlled(P const& problem, Adaptive control, NormPolicy policy)
+      : Base(problem, policy), tolerance_(std::max(control.rtol + control.atol, 1e-15)) {
+    most_tail_ = tail_per_root * std::sqrt(tolerance_);
+    rule_.goal = std::max(sweeps_below * tolerance_, rule_.goal);
+  }
+
+  Status advance(X& x, double t, double t_end) { return go(x, t, t_end, false); }
+  /// One accepted step, not beyond t_end; t moves.
+  Status step(X& x, double& t, double t_end) { return go(x, t, t_end, true); }
+  /// A new run: the step size is forgotten, too.
+  void begin() {
+    this->restart();
+    h_ = 0;
+  }
+  Work work() const {
+    Work work = work_;
+    work.iterations = memory_.iterations;
+    return work;
+  }
+
+ private:
+  using Base::damps, Base::memory_, Base::problem_, Base::registers_;
+  static constexpr std::int64_t most = 10'000'000;
+  static constexpr double tail_per_root = 1.0, sweeps_below = 0.05;
+
+  Status go(X& x, double& t, double t_end, bool one) {
+    if constexpr (Base::chooses) {
+      if (registers_ == Registers::avx512) return go_avx512(x, t, t_end, one);
+      if (registers_ == Registers::avx2) return go_avx2(x, t, t_end, one);
+    }
+    return go_here(x, t, t_end, one);
+  }
+  /// (a)^(1/s), s a power of 2.
+  static POLHODE_INLINE double root(double a) {
+    for (int power = s; power > 1; power /= 2) a = std::sqrt(a);
+    return a;
+  }
+  /// By the rate at which the state turns, and that at which its rate changes.
+  double starting_step(X const& x, double t, double longest) const {
+    Vec3<double> const& w = x.second;
+    auto const v = (*problem_)(t, x);
+    double const rate = length(w), change = length(v.second);
+    double const pace = 0.5 * rate + change / (rate + std::sqrt(change) + 1e-300);
+    return pace > 0 ? std::min(longest, 4 * root(std::sqrt(tolerance_)) / pace) : longest;
+  }
+  template <int bytes>
+  POLHODE_INLINE Status loop(X& x, double& t, double t_end, bool one) {
+    using Step = LawsonStep<s, bytes>;
+    auto const field = in_lanes<typename Step::L>(*problem_);
+    bool const feels = damps();
+    if (!(h_ > 0)) h_ = starting_step(x, t, t_end - t);
+    bool rejected_before = false, unsolved = false;
+    for (std::int64_t trial = 0; t < t_end; ++trial) {
+      if (trial > most) return Status::max_steps;
+      double const left = t_end - t;
+      // As many equal steps as h_ asks for: none is short because it is the last.
+      double const steps = std::ceil(left / h_ * (1 - 1e-10));
+      double const h = steps > 1 ? left / steps : left;
+      if (!(h > 10 * 0x1p-52 * std::fabs(t))) return unsolved ? Status::nonlinear_fail : Status::step_underflow;
+      auto const result = Step::step(field, feels, t, h, x, memory_, rule_, true);
+      bool const good = result.solved && result.tail <= most_tail_;
+      if (!good) [[unlikely]] {
+        ++work_.rejected;
+        if (!all_finite(x)) return Status::diverged;
+        unsolved = !result.solved;
+        double const shrink = unsolved || !std::isfinite(result.tail) ? 0.3 : 0.9 * root(most_tail_ / result.tail);
+        h_ = h * std::max(0.3, shrink);
+        rejected_before = true;
+        continue;
+      }
+      double const growth = std::min(3.0, 0.9 * root(most_tail_ / std::max(result.tail, 1e-300)));
+      // Steps that grow a little cost more than they save: their starting values are worse.
+      if (growth < 1)
+        h_ = h * growth;
+      else if (growth > 1.1 && !rejected_before)
+        h_ = std::max(h_, h * growth);
+      rejected_before = false;
+      t = steps > 1 ? t + h : t_end;
+      ++work_.steps;
+      this->accept(result, h, x);
+      if (one) break;
+    }
+    return all_finite(x) ? Status::ok : Status::diverged;
+  }
+  [[gnu::flatten, gnu::noinline]] Status go_here(X& x, double& t, double t_end, bool one) {
+    return loop<register_bytes>(x, t, t_end, one);
+  }
+  POLHODE_TARGET("arch=x86-64-v3")
+  [[gnu::flatten, gnu::noinline]] Status go_avx2(X& x, double& t, double t_end, bool one) {
+    return loop<32>(x, t, t_end, one);
+  }
+  POLHODE_TARGET("arch=x86-64-v4")
+  [[gnu::flatten, gnu::noinline]] Status go_avx512(X& x, double& t, double t_end, bool one) {
+    return loop<64>(x, t, t_end, one);
+  }
+
+  double tolerance_, most_tail_;
+  SweepRule rule_;
+  double h_ = 0;
+  Work work_;
+};
+
+/// order 2s, 4 or 8 stages; evaluations  s a sweep, 4 to 15 sweeps a step; s more after a restart
+template <int s, int sweeps = 0>
+struct GaussLawson {
+  template <Problem P>
+    requires std::same_as<typename P::Space, RigidBody<FlatQuaternion<double>>>
+  auto bind(P const& p, FixedStep control, NormPolicy policy) const {
+    return LawsonFixed<s, P>(p, control, policy, SweepRule{.sweeps = sweeps});
+  }
+  template <Problem P>
+    requires(std::same_as<typename P::Space, RigidBody<FlatQuaternion<double>>>&& sweeps == 0)
+  auto bind(P const& p, Adaptive control, NormPolicy policy) const {
+    return LawsonControlled<s, P>(p, control, policy);
+  }
+};
+
+/// Stages solved to round-off.
+template <int s>
+struct GaussLawsonEntry : GaussLawson<s> {
+  static constexpr MethodInfo info{
+      .name = s == 4 ? "gauss4_lawson" : "gauss8_lawson",
+      .family = Family::gauss,
+      .order = 2 * s,
+      .needs = Needs::quaternion,
+      .preserves = keeps_norm | keeps_energy | keeps_momentum,
+      .source =
+          "Lawson (1967), SIAM J. Numer. Anal. 4, 372; Hairer, Lubich & Wanner, II.1.3; stages in lanes: van der "
+          "Houwen & Sommeijer (1990), J. Comput. Appl. Math. 29, 111",
+      .pitfall =
+          "on (q, omega) not symplectic: the direction of L errs by O(h^2s); the frame of a step depends on the "
+          "one before: not symmetric",
+      .no_feedback = "the next step begins from the stages of the last",
+      .no_relaxation = "the next step begins from the stages of the last"};
+};
+/// 6 sweeps in every step, 8 where there is no step before.
+struct Gauss8LawsonSweeps6 : GaussLawson<8, 6> {
+  static constexpr MethodInfo info{
+      .name = "gauss8_lawson_sweeps6",
+      .family = Family::gauss,
+      .needs = Needs::quaternion,
+      .source = "the same; iterated Runge-Kutta: van der Houwen & Sommeijer (1990), J. Comput. Appl. Math. 29, 111",
+      .pitfall = "long steps leave an iteration error, and with it drift of the norm: compare gauss8_lawson",
+      .no_feedback = "the next step begins from the stages of the last",
+      .no_relaxation = "the next step begins from the stages of the last"};
+};
+
+}  // namespace polhode

@@ -1,0 +1,319 @@
+#pragma once
+/// One step of Gauss collocation in a frame that turns with the body, its stages in lanes.
+///
+/// With e(t) the rotation at the constant rate m, the mean body rate of the step as the last one predicts it, the
+/// attitude is q = p e and
+///   p' = 1/2 p (e (omega - m) e^-1),   omega' = the field's
+/// p hardly moves, so a fixed point finds the stages of (p, omega) in few sweeps, however far the body turns. That is
+/// the integrating factor of Lawson, in the space's own kinematics. p' is p times a vector, so collocation keeps |p|;
+/// omega is plain Gauss: energy and |L| of a free body stay.
+/// Damping: where the field answers omega by -lambda omega, lambda a mean over axes, the sweeps solve for that part.
+///
+/// Sources: Lawson (1967), SIAM J. Numer. Anal. 4, 372; van der Houwen & Sommeijer (1990), J. Comput. Appl. Math. 29,
+/// 111 (iterated Runge-Kutta, a stage on each processor); Hairer, Lubich & Wanner, II.1.3, VIII.6; coefficients and
+/// sums as in gauss_stages.hpp.
+#include <array>
+
+#include "integrators/gauss_tableau.hpp"
+#include "integrators/registers.hpp"
+#include "problems/lanes_field.hpp"
+
+namespace polhode {
+
+/// Coefficients of s stages in lanes: [j][i] is what slope j gives to stage i.
+template <int s>
+struct LaneTableau {
+  using Row = std::array<double, std::size_t(s)>;
+  using Matrix = std::array<Row, std::size_t(s)>;
+
+  alignas(64) Matrix mu, beyond;  ///< beyond[j][k] as in GaussCoefficients
+  alignas(64) Row b, c;
+  alignas(64) Row tail;  ///< sum_j tail_j L_j is h times the slopes' coefficient of Legendre's polynomial s - 1
+
+  LaneTableau() {
+    GaussMu<double> const table(s);
+    for (std::size_t j = 0; j < s; ++j) {
+      b[j] = table.b[j];
+      c[j] = table.c[j];
+      double before = 1, now = 2 * c[j] - 1;
+      for (int k = 1; k + 1 < s; ++k) {
+        double const next = ((2 * k + 1) * (2 * c[j] - 1) * now - k * before) / (k + 1);
+        before = now;
+        now = next;
+      }
+      tail[j] = (2 * s - 1) * now;
+      for (std::size_t i = 0; i < s; ++i) {
+        mu[j][i] = table.mu[i][j];
+        beyond[j][i] = table.beyond[j][i];
+      }
+    }
+  }
+  static LaneTableau const& get() {
+    static LaneTableau const table;
+    return table;
+  }
+};
+
+/// What a step leaves for the next: its increments of omega, what rounding took from omega, and the mean damping.
+template <int s>
+struct LawsonMemory {
+  using Matrix = typename LaneTableau<s>::Matrix;
+
+  alignas(64) std::array<std::array<double, std::size_t(s)>, 3> slopes;  ///< L_j = h b_j omega'_j
+  Vec3<double> carry;
+  double last_step;                                           ///< [s]; 0: there is none
+  double damping;                                             ///< lambda [1/s]; negative: not known
+  double damped_for = 0;                                      ///< lambda h of the matrices
+  alignas(64) Matrix damped;                                  ///< (1 + lambda a h)^-1 mu, as LaneTableau has mu
+  alignas(64) std::array<double, std::size_t(s)> damped_one;  ///< (1 + lambda a h)^-1 (1, ..., 1)
+  std::int64_t iterations = 0;
+  bool unconverged;
+
+  LawsonMemory() { restart(); }
+  void restart() {
+    fill(carry, 0.0);
+    last_step = 0;
+    damping = -1;
+    unconverged = false;
+  }
+};
+
+/// A stage iteration ends when its error falls below `goal`, in radians and as a part of the rate, or after exactly
+/// `sweeps` sweeps, two more where a step knows nothing of one before.
+struct SweepRule {
+  double goal = 0x1p-62;  ///< far below the rounding of one step: what is left of it is the same in every step
+  int sweeps = 0;         ///< 0: by the goal
+};
+
+/// One body's state on flat quaternions.
+using BodyPoint = Point<RigidBody<FlatQuaternion<double>>>;
+
+template <int s, int bytes>
+struct LawsonStep {
+  using L = Lanes<s, double, bytes>;
+  using V = Vec3<L>;
+  using Q = Quat<L>;
+  using Table = LaneTableau<s>;
+  using Memory = LawsonMemory<s>;
+  static constexpr int most_sweeps = 60;
+
+  /// What a step gave.
+  struct Result {
+    BodyPoint x;
+    Vec3<double> carry;
+    bool solved;
+    double tail;  ///< size of the slopes' last coefficient: rotation [rad], rate as a part of the rate
+    alignas(64) std::array<std::array<double, std::size_t(s)>, 3> slopes;
+  };
+
+  /// One step from x; the memory is what the last one left, and is not touched but for its damping and counts.
+  template <class Field>
+  static POLHODE_INLINE Result step(Field const& field, bool damps, double t, double h, BodyPoint const& x,
+                                    Memory& memory, SweepRule const& rule, bool wants_tail) {
+    Table const& table = Table::get();
+    L const hb = h * L::load(table.b.data()), hc = h * L::load(table.c.data()), stage_times = t + hc;
+    Q const q0{L(x.first.x), L(x.first.y), L(x.first.z), L(x.first.w)};
+    V const w0{L(x.second.x), L(x.second.y), L(x.second.z)};
+    double const ratio = memory.last_step > 0 ? h / memory.last_step : 1e300;
+    bool const knows = ratio < 3;
+    V w, mean;
+    if (knows)
+      extrapolate(table, memory, ratio, w0, w, mean);
+    else
+      begin(field, damps, t, h, hc, q0, w0, memory, w, mean);
+    double const damped = memory.damping * h;
+    bool const shifts = damps && damped > 0.25;
+    if (shifts && damped != memory.damped_for) make_damped(table, damped, memory);
+
+    // The frame at the stages: half-angles up to a few radians.
+    L const turning = sqrt(dot(mean, mean) + 1e-300);
+    detail::SinCosLanes<s, bytes> const half(0.5 * (turning * hc));
+    V const axis = (1.0 / turning) * mean;
+    Q const e{half.sin * axis.x, half.sin * axis.y, half.sin * axis.z, half.cos};
+    Mat3<L> const turn = matrix(e);
+
+    Columns mu;  // in registers
+    unroll<s>([&](auto j) POLHODE_LAMBDA { mu.of[j] = L::load(table.mu[j].data()); });
+    alignas(64) double K[3][s], Kp[4][s];
+    L const per_rate = 1.0 / (turning + abs_of(w0.x) + abs_of(w0.y) + abs_of(w0.z));
+    double const lambda = memory.damping;
+    Q p = q0;
+    V dw;
+    bool solved = rule.sweeps > 0;
+    int const most = rule.sweeps > 0 ? rule.sweeps + (knows ? 0 : 2) : most_sweeps;
+    double before = 1e300;
+    int sweep = 0;
+    for (; sweep < most;) {
+      auto const v = field(stage_times, typename RigidBody<FlatQuaternion<L>>::Point{p * e, w});
+      dw = {hb * v.second.x, hb * v.second.y, hb * v.second.z};
+      V w_next;
+      if (shifts) [[unlikely]] {
+        L const pull = lambda * hb, one = L::load(memory.damped_one.data());
+        store(V{dw.x + pull * w.x, dw.y + pull * w.y, dw.z + pull * w.z}, K);
+        w_next = {(x.second.x + memory.carry.x) * one + times(memory.damped, K[0]),
+                  (x.second.y + memory.carry.y) * one + times(memory.damped, K[1]),
+                  (x.second.z + memory.carry.z) * one + times(memory.damped, K[2])};
+      } else {
+        store(dw, K);
+        w_next = {x.second.x + (memory.carry.x + times(mu, K[0])), x.second.y + (memory.carry.y + times(mu, K[1])),
+                  x.second.z + (memory.carry.z + times(mu, K[2]))};
+      }
+      // Rates are of the newest omega: what the torque feels of the attitude then converges twice as fast.
+      Q const dp = quaternion_rate(p, turn * ((v.first - mean) + (w_next - w)));
+      store(Q{hb * dp.x, hb * dp.y, hb * dp.z, hb * dp.w}, Kp);
+      Q const p_next{x.first.x + times(mu, Kp[0]), x.first.y + times(mu, Kp[1]), x.first.z + times(mu, Kp[2]),
+                     x.first.w + times(mu, Kp[3])};
+      ++sweep;
+      if (rule.sweeps == 0) {
+        L const change =
+            max_of(max_of(max_of(abs_of(p_next.x - p.x), abs_of(p_next.y - p.y)),
+                          max_of(abs_of(p_next.z - p.z), abs_of(p_next.w - p.w))),
+                   per_rate * max_of(max_of(abs_of(w_next.x - w.x), abs_of(w_next.y - w.y)), abs_of(w_next.z - w.z)));
+        double const now = greatest_of(change);
+        double const left = sweep > 1 && now < before ? now * (now / before) : now;
+        // At rest, as well, where only rounding errors move it.
+        solved = left <= rule.goal || (now <= 0x1p-46 && before <= 2 * now);
+        if (solved || !(now < 1e3)) break;
+        before = now;
+      }
+      p = p_next;
+      w = w_next;
+    }
+    memory.iterations += sweep;
+
+    Result result;
+    result.solved = solved;
+    dw.x.store(result.slopes[0].data());
+    dw.y.store(result.slopes[1].data());
+    dw.z.store(result.slopes[2].data());
+    Quat<double> const moved{x.first.x + total(Kp[0]), x.first.y + total(Kp[1]), x.first.z + total(Kp[2]),
+                             x.first.w + total(Kp[3])};
+    // Nodes are symmetric: the first angle and the last are the whole turn.
+    double const s1 = half.sin[0], s2 = half.sin[s - 1], c1 = half.cos[0], c2 = half.cos[s - 1];
+    double const sine = s1 * c2 + c1 * s2;
+    Quat<double> const end{sine * axis.x[0], sine * axis.y[0], sine * axis.z[0], c1 * c2 - s1 * s2};
+    // What rounding leaves of |end| = 1 would be the same every step: it is taken out.
+    double const shrink = 0.5 * norm_excess(end);
+    Quat<double> const turned = moved * end;
+    result.x.first = {turned.x - shrink * turned.x, turned.y - shrink * turned.y, turned.z - shrink * turned.z,
+                      turned.w - shrink * turned.w};
+    Vec3<double>::each(
+        [&](double& to, double& rest, double from, double lost_before, auto const& slopes) POLHODE_LAMBDA {
+          auto const sum = two_sum(from, total(slopes.data()) + lost_before);
+          to = sum.sum;
+          rest = sum.rest;
+        },
+        result.x.second, result.carry, x.second, memory.carry, as_vector(result.slopes));
+    if (wants_tail) {
+      L const weights = L::load(table.tail.data());
+      auto const part = [&](double const* slopes) POLHODE_LAMBDA { return sum_of(weights * L::load(slopes)); };
+      double const a = part(Kp[0]), b = part(Kp[1]), c = part(Kp[2]), d = part(Kp[3]);
+      double const u = part(result.slopes[0].data()), v = part(result.slopes[1].data()),
+                   z = part(result.slopes[2].data());
+      double const rate = per_rate[0];
+      result.tail = std::sqrt(4 * (a * a + b * b + c * c + d * d) + rate * rate * (u * u + v * v + z * z));
+    }
+    return result;
+  }
+
+ private:
+  template <class T>
+  static POLHODE_INLINE Vec3<T> as_vector(std::array<T, 3> const& a) {
+    return {a[0], a[1], a[2]};
+  }
+  /// The sum by halves.
+  static POLHODE_INLINE double total(double const* slopes) { return sum_of(L::load(slopes)); }
+  /// Lanes that are to be read one by one, in memory: g++ 12 would take them out of registers by shuffles, which takes
+  /// longer.
+  template <class Vector, class Rows>
+  static POLHODE_INLINE void store(Vector const& lanes, Rows& rows) {
+    double* to = rows[0];
+    Vector::each([&](L const& a) POLHODE_LAMBDA { a.store(to), to += s; }, lanes);
+    asm("" : "+m"(rows));
+  }
+  struct Columns {
+    L of[s];
+    POLHODE_INLINE L const& operator[](std::size_t j) const { return of[j]; }
+  };
+  static POLHODE_INLINE L const& column(L const& in_registers) { return in_registers; }
+  static POLHODE_INLINE L column(typename Table::Row const& in_memory) { return L::load(in_memory.data()); }
+  /// sum_j m_j k_j, by halves.
+  template <class Matrix>
+  static POLHODE_INLINE L times(Matrix const& m, double const* k) {
+    auto const term = [&](std::size_t j) POLHODE_LAMBDA { return k[j] * column(m[j]); };
+    if constexpr (s == 8)
+      return ((term(0) + term(4)) + (term(2) + term(6))) + ((term(1) + term(5)) + (term(3) + term(7)));
+    else
+      return (term(0) + term(2)) + (term(1) + term(3));
+  }
+  /// The last step's polynomial of omega at the stages of this one, and in its middle.
+  static POLHODE_INLINE void extrapolate(Table const& table, Memory const& memory, double ratio, V const& w0, V& w,
+                                         V& mean) {
+    L const z = ratio * L::load(table.c.data()), middle(0.5 * ratio);
+    auto const ahead = [&](std::size_t axis, L const& from, L& at_stages, L& at_middle) POLHODE_LAMBDA {
+      alignas(64) double power[s];
+      times(table.beyond, memory.slopes[axis].data()).store(power);
+      L sum(0.0), half(0.0);
+      unroll<s>([&](auto k) POLHODE_LAMBDA {
+        double const coefficient = power[s - 1 - k];
+        sum = (sum + coefficient) * z;
+        half = (half + coefficient) * middle;
+      });
+      at_stages = from + sum;
+      at_middle = from + half;
+    };
+    ahead(0, w0.x, w.x, mean.x);
+    ahead(1, w0.y, w.y, mean.y);
+    ahead(2, w0.z, w.z, mean.z);
+  }
+  /// The same from the slope at x alone, and the mean damping there: from one evaluation, a direction in each lane.
+  template <class Field>
+  static POLHODE_INLINE void begin(Field const& field, bool damps, double t, double h, L const& hc, Q const& q0,
+                                   V const& w0, Memory& memory, V& w, V& mean) {
+    double const nudge = 0x1p-20 * (1.0 + abs_of(w0.x[0]) + abs_of(w0.y[0]) + abs_of(w0.z[0]));
+    auto const in_lane = [&](int lane) POLHODE_LAMBDA {
+      return L::of([&](int i) POLHODE_LAMBDA { return damps && i == lane ? nudge : 0.0; });
+    };
+    auto const v = field(L(t), typename RigidBody<FlatQuaternion<L>>::Point{
+                                   q0, V{w0.x + in_lane(1), w0.y + in_lane(2), w0.z + in_lane(3)}});
+    Vec3<double> const slope{v.second.x[0], v.second.y[0], v.second.z[0]};
+    if (damps && memory.damping < 0) {
+      double const sum = (v.second.x[1] - slope.x) + (v.second.y[2] - slope.y) + (v.second.z[3] - slope.z);
+      memory.damping = max_of(0.0, -sum / (3 * nudge));
+    }
+    double const lambda = damps ? memory.damping : 0.0;
+    L const reach = hc / (1.0 + (0.5 * lambda) * hc), middle(0.5 * h / (1 + lambda * h / 3));
+    w = {w0.x + slope.x * reach, w0.y + slope.y * reach, w0.z + slope.z * reach};
+    mean = {w0.x + slope.x * middle, w0.y + slope.y * middle, w0.z + slope.z * middle};
+  }
+  /// memory.damped for lambda h, by Gauss and Jordan; the matrix is near 1, so the diagonal serves as pivots.
+  [[gnu::noinline]] static void make_damped(Table const& table, double lambda_h, Memory& memory) {
+    constexpr auto n = std::size_t(s);
+    double left[n][n], right[n][n + 1];
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < n; ++j) {
+        left[i][j] = (i == j ? 1.0 : 0.0) + lambda_h * table.mu[j][i] * table.b[j];
+        right[i][j] = table.mu[j][i];
+      }
+      right[i][n] = 1;
+    }
+    for (std::size_t k = 0; k < n; ++k) {
+      double const pivot = 1 / left[k][k];
+      for (std::size_t j = k; j < n; ++j) left[k][j] *= pivot;
+      for (std::size_t j = 0; j <= n; ++j) right[k][j] *= pivot;
+      for (std::size_t i = 0; i < n; ++i) {
+        if (i == k) continue;
+        double const factor = left[i][k];
+        for (std::size_t j = k; j < n; ++j) left[i][j] -= factor * left[k][j];
+        for (std::size_t j = 0; j <= n; ++j) right[i][j] -= factor * right[k][j];
+      }
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < n; ++j) memory.damped[j][i] = right[i][j];
+      memory.damped_one[i] = right[i][n];
+    }
+    memory.damped_for = lambda_h;
+  }
+};
+
+}  // namespace polhode

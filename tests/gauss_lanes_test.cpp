@@ -1,0 +1,209 @@
+/// Gauss with its stages in lanes: the solution, its order, what it keeps, the same bits whatever the registers.
+#include "integrators/gauss_lanes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "integrators/gauss.hpp"
+#include "problems/erased.hpp"
+#include "problems/free_body.hpp"
+#include "problems/gravity_gradient.hpp"
+#include "problems/pd_slew.hpp"
+#include "problems/tether_capture.hpp"
+
+namespace polhode {
+namespace {
+
+template <class D>
+auto field_of(D const& definition) {
+  return definition.template field<double, FlatQuaternion, true>();
+}
+/// The attitude at t_end by Gauss in quadruple precision.
+template <class D>
+Quat<Quad> exact_attitude(D const& definition, double t_end) {
+  auto const field = definition.template field<Quad, S3, true>();
+  auto x = field.initial();
+  EXPECT_EQ(Gauss<8>{}.bind(field, FixedStep{0.25}, NormPolicy::none).advance(x, 0, Quad(t_end)), Status::ok);
+  return x.first;
+}
+double error_of(BodyPoint const& x, Quat<Quad> const& exact) {
+  return double(angle_between(Quat<Quad>{x.first.x, x.first.y, x.first.z, x.first.w}, exact));
+}
+template <class Method, class Control, class P>
+BodyPoint solve(Method const& method, Control control, P& problem, double t_end) {
+  BodyPoint x = problem.initial();
+  auto stepper = method.bind(std::as_const(problem), control, NormPolicy::none);
+  EXPECT_EQ(stepper.advance(x, 0, t_end), Status::ok);
+  return x;
+}
+bool same_bits(BodyPoint const& a, BodyPoint const& b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+TEST(GaussLanes, ReachesRoundOffInFewSteps) {
+  FreeBody const free{Choice{}};
+  PdSlew const slew{Choice{}};
+  auto const one = field_of(free);
+  auto const other = field_of(slew);
+  EXPECT_LT(error_of(solve(GaussLawson<8>{}, FixedStep{5}, one, 50), exact_attitude(free, 50)), 5e-15);
+  EXPECT_LT(error_of(solve(GaussLawson<4>{}, FixedStep{0.5}, one, 50), exact_attitude(free, 50)), 2e-14);
+  EXPECT_LT(error_of(solve(GaussLawson<8>{}, FixedStep{5}, other, 60), exact_attitude(slew, 60)), 5e-14);
+  EXPECT_LT(error_of(solve(GaussLawson<4>{}, FixedStep{0.5}, other, 60), exact_attitude(slew, 60)), 2e-14);
+}
+
+// Steps that turn by up to two radians and more: the frame carries them.
+TEST(GaussLanes, HasOrderTwiceItsStages) {
+  FreeBody const free{Choice{}};
+  auto const field = field_of(free);
+  Quat<Quad> const exact = exact_attitude(free, 50);
+  auto const slope = [&](auto const& method, double h) {
+    double const coarse = error_of(solve(method, FixedStep{h}, field, 50), exact);
+    double const fine = error_of(solve(method, FixedStep{h / 2}, field, 50), exact);
+    return std::log2(coarse / fine);
+  };
+  EXPECT_NEAR(slope(GaussLawson<4>{}, 2.5), 8, 0.3);
+  EXPECT_NEAR(slope(GaussLawson<8>{}, 12.5), 16, 1);
+}
+
+// The measured run goes through virtual calls, a lane at a time; the timed one through the widest registers.
+template <class D>
+void expect_same_bits(D const& definition, double t_end) {
+  auto const typed = field_of(definition);
+  auto const erased = erase_type(typed);
+  auto const compare = [&](auto const& method, auto control) {
+    EXPECT_TRUE(same_bits(solve(method, control, typed, t_end), solve(method, control, *erased, t_end)));
+  };
+  compare(GaussLawson<4>{}, FixedStep{0.7});
+  compare(GaussLawson<8>{}, FixedStep{4});
+  compare(GaussLawson<8, 6>{}, FixedStep{4});
+  compare(GaussLawson<4>{}, Adaptive{1e-6, 1e-8});
+  compare(GaussLawson<8>{}, Adaptive{1e-9, 1e-11});
+}
+TEST(GaussLanes, GiveTheSameBitsWhateverTheRegisters) {
+  expect_same_bits(FreeBody(Choice{}), 50);
+  expect_same_bits(PdSlew(Choice{}), 60);
+}
+
+TEST(GaussLanes, RunProblemsThatKnowNothingOfLanes) {
+  GravityGradient const definition{Choice{}};
+  auto const field = field_of(definition);
+  BodyPoint const gauss = solve(Gauss<6>{}, FixedStep{0.25}, field, 100);
+  EXPECT_LT(angle_between(solve(GaussLawson<8>{}, FixedStep{5}, field, 100).first, gauss.first), 1e-12);
+}
+
+TEST(GaussLanes, KeepNormEnergyAndMomentumToRoundOff) {
+  auto const field = field_of(FreeBody(Choice{}));
+  Mat3<double> const J = field.inertia_matrix();
+  auto const energy = [&](BodyPoint const& x) { return dot(x.second, J * x.second); };
+  auto const momentum = [&](BodyPoint const& x) { return length(J * x.second); };
+  BodyPoint const start = field.initial();
+  for (int stages : {4, 8}) {
+    BodyPoint x = start;
+    auto const run = [&](auto stepper) { EXPECT_EQ(stepper.advance(x, 0, 10'000), Status::ok); };
+    if (stages == 4)
+      run(GaussLawson<4>{}.bind(field, FixedStep{1}, NormPolicy::none));
+    else
+      run(GaussLawson<8>{}.bind(field, FixedStep{1}, NormPolicy::none));
+    EXPECT_LT(std::fabs(dot(x.first, x.first) - 1), 3e-14) << stages;
+    EXPECT_LT(std::fabs(energy(x) / energy(start) - 1), 1e-14) << stages;
+    EXPECT_LT(std::fabs(momentum(x) / momentum(start) - 1), 1e-14) << stages;
+  }
+}
+
+TEST(GaussLanes, ChooseStepsSoThatTheErrorIsBelowTheTolerance) {
+  auto const check = [](auto const& definition, double t_end) {
+    auto const field = field_of(definition);
+    Quat<Quad> const exact = exact_attitude(definition, t_end);
+    for (double tolerance : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) {
+      double const eight = error_of(solve(GaussLawson<8>{}, Adaptive{tolerance, 0}, field, t_end), exact);
+      double const four = error_of(solve(GaussLawson<4>{}, Adaptive{tolerance, 0}, field, t_end), exact);
+      EXPECT_LT(eight, tolerance);
+      EXPECT_GT(eight, 1e-5 * tolerance);
+      EXPECT_LT(four, 10 * tolerance);
+      EXPECT_GT(four, 1e-5 * tolerance);
+    }
+  };
+  check(FreeBody(Choice{}), 50);
+  check(PdSlew(Choice{}), 60);
+}
+
+// A body at rest on which a torque begins to act; one on which nothing acts.
+TEST(GaussLanes, BeginAtRest) {
+  Choice choice;
+  choice.set["omega0"] = {0, 0, 0};
+  PdSlew const slew{choice};
+  auto const pushed = field_of(slew);
+  EXPECT_LT(error_of(solve(GaussLawson<8>{}, Adaptive{1e-9, 1e-12}, pushed, 60), exact_attitude(slew, 60)), 1e-9);
+  auto const still = field_of(FreeBody(choice));
+  EXPECT_TRUE(same_bits(solve(GaussLawson<8>{}, FixedStep{10}, still, 50), still.initial()));
+  EXPECT_TRUE(same_bits(solve(GaussLawson<8>{}, Adaptive{1e-9, 1e-12}, still, 50), still.initial()));
+}
+
+/// The state after `samples` samples of a controller, the torque held between them.
+template <class P, class Method, class Control>
+BodyPoint sampled_run(P problem, Method const& method, Control control, double period, int samples) {
+  BodyPoint x = problem.initial();
+  auto stepper = method.bind(std::as_const(problem), control, NormPolicy::none);
+  for (int i = 0; i < samples; ++i) {
+    problem.sample(i * period, x);
+    stepper.restart();
+    EXPECT_EQ(stepper.advance(x, i * period, (i + 1) * period), Status::ok);
+  }
+  return x;
+}
+TEST(GaussLanes, HoldTheTorqueOfTheLastSample) {
+  auto const compare = [](auto const& field) {
+    BodyPoint const gauss = sampled_run(field, Gauss<4>{}, FixedStep{0.05}, 0.1, 200);
+    BodyPoint const fixed = sampled_run(field, GaussLawson<4>{}, FixedStep{0.1}, 0.1, 200);
+    BodyPoint const chosen = sampled_run(field, GaussLawson<8>{}, Adaptive{1e-10, 1e-12}, 0.1, 200);
+    EXPECT_LT(angle_between(gauss.first, fixed.first), 1e-13);
+    EXPECT_LT(angle_between(gauss.first, chosen.first), 1e-9);
+    BodyPoint const erased = [&] {
+      auto problem = erase_type(field);
+      BodyPoint x = problem->initial();
+      auto stepper = GaussLawson<4>{}.bind(std::as_const(*problem), FixedStep{0.1}, NormPolicy::none);
+      for (int i = 0; i < 200; ++i) {
+        problem->sample(i * 0.1, x);
+        stepper.restart();
+        EXPECT_EQ(stepper.advance(x, i * 0.1, (i + 1) * 0.1), Status::ok);
+      }
+      return x;
+    }();
+    EXPECT_TRUE(same_bits(fixed, erased));
+  };
+  compare(field_of(TetherCapture(Choice{})));  // saturates
+  Choice quantized;
+  quantized.words = {"quantized"};
+  PdSlew(quantized).with_field<double, FlatQuaternion, true>([&](auto const& field) {
+    if constexpr (SampledProblem<std::remove_cvref_t<decltype(field)>>) compare(field);
+  });
+}
+
+TEST(GaussLanes, TakeAShorterLastStepAndProject) {
+  FreeBody const free{Choice{}};
+  auto const field = field_of(free);
+  EXPECT_LT(error_of(solve(GaussLawson<8>{}, FixedStep{3}, field, 50), exact_attitude(free, 50)), 1e-14);
+  BodyPoint x = field.initial();
+  auto stepper = GaussLawson<8>{}.bind(field, FixedStep{5}, NormPolicy::project);
+  EXPECT_EQ(stepper.advance(x, 0, 50), Status::ok);
+  EXPECT_EQ(stepper.projections().count, 10);
+  EXPECT_LT(std::fabs(dot(x.first, x.first) - 1), 4e-16);
+  EXPECT_LT(error_of(x, exact_attitude(free, 50)), 1e-14);
+}
+
+TEST(GaussLanes, SayWhenStagesCannotBeSolved) {
+  auto const field = field_of(PdSlew(Choice{}));
+  BodyPoint x = field.initial();
+  auto stepper = GaussLawson<8>{}.bind(field, FixedStep{2000}, NormPolicy::none);
+  EXPECT_NE(stepper.advance(x, 0, 4000), Status::ok);
+  x = field.initial();
+  x.second.x = std::nan("");
+  EXPECT_EQ(stepper.advance(x, 0, 2000), Status::diverged);
+  auto chosen = GaussLawson<8>{}.bind(field, Adaptive{1e-9, 1e-12}, NormPolicy::none);
+  EXPECT_NE(chosen.advance(x, 0, 60), Status::ok);
+}
+
+}  // namespace
+}  // namespace polhode
