@@ -11,77 +11,11 @@
 #include <set>
 
 #include "bench/cell.hpp"
-#include "problems/graph.hpp"
+#include "bench/cell_flags.hpp"
 #include "results/store.hpp"
 
 namespace polhode::bench {
 namespace {
-
-// ---- cells from the command line ------------------------------------------------------------------------------------
-
-double number_in(std::string_view text) {
-  double value = 0;
-  auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error == std::errc::result_out_of_range) throw UsageError(quote(text) + " is beyond the range of a double");
-  if (error != std::errc() || end != text.data() + text.size()) throw UsageError(quote(text) + " is not a number");
-  return value;
-}
-
-/// An option that takes a number; CLI11 by itself would read '' as 0.
-CLI::Option* add_number(CLI::App& verb, std::string const& flag, double& value, std::string const& help) {
-  return verb.add_option(flag, value, help)->check([](std::string const& text) -> std::string {
-    try {
-      static_cast<void>(number_in(text));
-      return {};
-    } catch (UsageError const& error) {
-      return error.what();
-    }
-  });
-}
-
-/// The flags that name one cell.
-struct CellFlags {
-  results::Cell cell;
-  std::vector<std::string> settings;
-  double h = 0, rtol = 0, atol = 0, t_end = 0;
-  CLI::Option *has_h = nullptr, *has_rtol = nullptr, *has_atol = nullptr, *has_t_end = nullptr;
-
-  void add_physics(CLI::App& verb) {
-    verb.add_option("PROBLEM", cell.problem, "Problem; see `polhode list problems`")->required();
-    verb.add_option("--variant", cell.variant, "Variant words, joined by commas");
-    has_t_end = add_number(verb, "--t-end", t_end, "Horizon [s]; default the problem's own");
-    verb.add_option("--set", settings, "Change a parameter: NAME=NUMBER[,NUMBER...], or graph=FILE; repeatable")
-        ->type_name("NAME=VALUE")
-        ->allow_extra_args(false);  // what follows the value is no second one: it may be the problem
-  }
-  void add_method(CLI::App& verb) {
-    verb.add_option("--formulation", cell.formulation, "Attitude description; see `polhode list problems`")
-        ->default_str("quaternion");
-    verb.add_option("--integrator", cell.integrator, "Integrator; see `polhode list integrators`")->required();
-    verb.add_option("--policy", cell.policy, "Norm policy: none, project")->default_str("none");
-    has_h = add_number(verb, "--h", h, "Step size [s]; divides the sample period");
-    has_rtol = add_number(verb, "--rtol", rtol, "Relative tolerance, instead of --h");
-    has_atol = add_number(verb, "--atol", atol, "Absolute tolerance; default rtol / 100");
-  }
-  /// The cell that the flags name. Throws UsageError.
-  results::Cell chosen() const {
-    results::Cell chosen = cell;
-    if (chosen.formulation.empty()) chosen.formulation = "quaternion";
-    for (std::string const& text : settings) {
-      auto const [name, values] = parse_setting(text);
-      if (!chosen.set.try_emplace(name, values).second)
-        throw UsageError(fmt::format("--set {}: {} is given twice", quote(text), quote(name)));
-    }
-    if (has_h && has_h->count() > 0) chosen.h = h;
-    if (has_rtol && has_rtol->count() > 0) chosen.rtol = rtol;
-    if (has_atol && has_atol->count() > 0) chosen.atol = atol;
-    if (has_t_end->count() > 0) {
-      check_positive("t_end", t_end);
-      chosen.t_end = t_end;
-    }
-    return chosen;
-  }
-};
 
 // ---- simulate -------------------------------------------------------------------------------------------------------
 
@@ -254,14 +188,8 @@ void make_folder(std::filesystem::path const& folder) {
 }
 
 /// Computes, certifies and saves the reference of one cell's physics.
-void make_reference(results::Cell cell, std::filesystem::path const& folder) {
-  cell.integrator = "dopri5";  // any method serves: only the physics is used
-  cell.formulation = "quaternion";
-  cell.policy = "none";
-  cell.h.reset();
-  cell.rtol = 1e-6;
-  cell.atol.reset();
-  PreparedCell const prepared = prepare(cell);
+void make_reference(results::Cell const& cell, std::filesystem::path const& folder) {
+  PreparedCell const prepared = prepare(physics_alone(cell));
   make_folder(folder);
   Reference const reference = Reference::solve(*prepared.problem, prepared.schedule);
   Certificate const certificate = certify(prepared.physics, *prepared.problem, prepared.schedule, reference);
@@ -305,33 +233,6 @@ void add_reference(CLI::App& app) {
 
 }  // namespace
 
-std::pair<std::string, std::vector<double>> parse_setting(std::string const& text) {
-  auto const equals = text.find('=');
-  if (equals == std::string::npos || equals == 0)
-    throw UsageError(fmt::format("--set {}: write NAME=NUMBER[,NUMBER...]", quote(text)));
-  std::string const name = text.substr(0, equals);
-  std::string const value = text.substr(equals + 1);
-  bool const numbers = value.find_first_not_of("0123456789+-.,eE ") == std::string::npos;
-  if (name == "graph" && !numbers) {
-    try {
-      return {name, read_graph(value)};
-    } catch (ParameterError const& error) {
-      throw SuiteError(error.what());
-    }
-  }
-  std::vector<double> values;
-  for (std::size_t from = equals + 1; from <= text.size();) {
-    std::size_t const to = std::min(text.find(',', from), text.size());
-    try {
-      values.push_back(number_in(std::string_view(text).substr(from, to - from)));
-    } catch (UsageError const& error) {
-      throw UsageError(fmt::format("--set {}: {}", quote(text), error.what()));
-    }
-    from = to + 1;
-  }
-  return {name, values};
-}
-
 void add_commands(CLI::App& app, int& code) {
   add_list(app);
   add_run(app, code);
@@ -339,6 +240,8 @@ void add_commands(CLI::App& app, int& code) {
   add_reference(app);
   add_check(app, code);
   add_export(app);
+  add_import(app);
+  add_doctor(app);
 }
 
 }  // namespace polhode::bench

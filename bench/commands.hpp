@@ -16,8 +16,9 @@ void add_list(CLI::App& app);
 void add_check(CLI::App& app, int& code);
 /// The verbs export and merge: records in other files.
 void add_export(CLI::App& app);
-
-/// Parses "inertia=0.5,0.85,1". Throws UsageError.
-std::pair<std::string, std::vector<double>> parse_setting(std::string const& text);
+/// The verb doctor: what is built in, and the machine.
+void add_doctor(CLI::App& app);
+/// The verb import: trajectories of other programs.
+void add_import(CLI::App& app);
 
 }  // namespace polhode::bench

@@ -7,7 +7,6 @@
 namespace polhode::bench {
 namespace {
 
-constexpr int comparisons = 1000;  // at most, over the horizon: a reference costs more than a step
 constexpr int invariants_kept = 500;
 constexpr int moments_kept = 60;
 constexpr double decades_kept = 4;
@@ -63,8 +62,8 @@ std::optional<double> growth_exponent(std::vector<double> const& times, std::vec
 }
 
 Metrics::Metrics(UsableReference const* reference, BodyParameters const* free_body, double t_end,
-                 std::optional<PinnedBody<Quad>> pinned)
-    : reference_(reference), pinned_(std::move(pinned)), t_end_(t_end) {
+                 std::optional<PinnedBody<Quad>> pinned, int comparisons)
+    : reference_(reference), pinned_(std::move(pinned)), t_end_(t_end), comparisons_(comparisons) {
   if (free_body) inertia_ = free_body->matrix<Quad>();
 }
 
@@ -122,7 +121,7 @@ void Metrics::see_constraint(Sight const& sight) {
 void Metrics::compare(Sight const& sight) {
   std::vector<double> moment{sight.t, std::fabs(drifts_.back()), raw_max_};
   if (reference_) moment.push_back(errors_of(sight));
-  double const interval = t_end_ / comparisons;
+  double const interval = t_end_ / comparisons_;
   next_comparison_ = interval * (std::floor(sight.t / interval * (1 + 1e-12)) + 1) * (1 - 1e-12);
 
   if (sight.t < next_moment_ && sight.t < t_end_) return;

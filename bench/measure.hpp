@@ -35,9 +35,10 @@ std::optional<double> growth_exponent(std::vector<double> const& times, std::vec
 class Metrics {
  public:
   /// reference null: nothing to hold the run against. free_body: its energy and angular momentum are invariants; null
-  /// if the problem has no such body. pinned: a constrained body.
+  /// if the problem has no such body. pinned: a constrained body. comparisons with the reference are made, at most, over
+  /// the horizon: one costs more than a step.
   Metrics(UsableReference const* reference, BodyParameters const* free_body, double t_end,
-          std::optional<PinnedBody<Quad>> pinned = {});
+          std::optional<PinnedBody<Quad>> pinned = {}, int comparisons = 1000);
   /// At 0 s and after every accepted step, in order of time.
   void see(Sight const& sight);
   /// Writes what was measured into the record.
@@ -62,6 +63,7 @@ class Metrics {
   std::optional<Mat3<Quad>> inertia_;       ///< of a free body: its energy and angular momentum are invariants
   std::optional<PinnedBody<Quad>> pinned_;  ///< a constrained body
   double t_end_;
+  int comparisons_;
   std::optional<Invariants> start_;
 
   double drift_max_ = 0, drift_final_ = 0, drift_squares_ = 0, raw_max_ = 0;
