@@ -3,6 +3,7 @@
 #include "integrators/catalog/lists.hpp"
 #include "integrators/gauss.hpp"
 #include "integrators/gauss_canonical.hpp"
+#include "integrators/gauss_lanes.hpp"
 
 namespace polhode {
 
@@ -10,6 +11,7 @@ struct GaussMethods : Types<GaussEntry<1>, GaussEntry<2>, GaussEntry<3>, GaussEn
                             GaussEntry<7>, GaussEntry<8>,              // to round-off
                             Gauss2Sweeps1, Gauss2Sweeps2, Gauss2Tol6,  // and not
                             GaussCanonical<1>, GaussCanonical<2>, GaussCanonical<3>, GaussCanonical<4>,
-                            GaussCanonical<5>, GaussCanonical<6>, GaussCanonical<7>, GaussCanonical<8>> {};
+                            GaussCanonical<5>, GaussCanonical<6>, GaussCanonical<7>, GaussCanonical<8>,
+                            GaussLawsonEntry<4>, GaussLawsonEntry<8>, Gauss8LawsonSweeps6> {};
 
 }  // namespace polhode

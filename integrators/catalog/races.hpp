@@ -4,13 +4,16 @@
 #include "integrators/catalog/lists.hpp"
 #include "integrators/commutator_free.hpp"
 #include "integrators/gauss.hpp"
+#include "integrators/gauss_lanes.hpp"
+#include "integrators/high_order.hpp"
 #include "integrators/lie_group.hpp"
 #include "integrators/ode45.hpp"
 #include "integrators/runge_kutta.hpp"
 
 namespace polhode {
 
-struct RacedMethods : Types<Rk4, Dopri5, Dopri5Ode45, GaussEntry<1>, GaussEntry<2>, GaussEntry<3>, GaussEntry<4>,
-                            Gauss2Sweeps1, Gauss2Sweeps2, Gauss2Tol6, LieEuler, Rkmk4, CommutatorFree4> {};
+struct RacedMethods
+    : Types<Rk4, Dopri5, Dopri5Ode45, Dop853, GaussEntry<1>, GaussEntry<2>, GaussEntry<3>, GaussEntry<4>, Gauss2Sweeps1,
+            Gauss2Sweeps2, Gauss2Tol6, GaussLawsonEntry<8>, Gauss8LawsonSweeps6, LieEuler, Rkmk4, CommutatorFree4> {};
 
 }  // namespace polhode
