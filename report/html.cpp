@@ -112,12 +112,17 @@ std::string render(Figure const& figure) {
       figure.name, inlined(figure), caption, data);
 }
 
-std::string contents(Document const& document) {
+std::string link_of(Interactive const& interactive) {
+  return interactive.section.empty() ? "" : "<li><a href=\"#explore\">Explore the records</a></li>\n";
+}
+
+std::string contents(Document const& document, Interactive const& interactive) {
   std::string out = "<nav><ul>\n";
   int n = 0;
   for (Block const& block : document.blocks) {
     auto const* heading = std::get_if<Heading>(&block);
     if (heading != nullptr && heading->level == 2) {
+      if (n == 1) out += link_of(interactive);
       out += fmt::format("<li><a href=\"#section-{}\">{}</a></li>\n", ++n, escape_html(heading->text));
     }
   }
@@ -152,16 +157,17 @@ std::string escape_html(std::string_view raw) {
   return out;
 }
 
-std::string to_html(Document const& document) {
+std::string to_html(Document const& document, Interactive const& interactive) {
   std::string const title = escape_html(document.title);
   std::string out = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{0}</title>\n"
-      "<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n{2}<main>\n",
-      title, style, contents(document));
+      "<style>{1}{2}</style>\n</head>\n<body>\n<h1>{0}</h1>\n{3}<main>\n",
+      title, style, interactive.style, contents(document, interactive));
   int sections = 0;
   auto const print = Overload{
       [&](Heading const& heading) {
+        if (heading.level == 2 && sections == 1) out += interactive.section;
         std::string const id = heading.level == 2 ? fmt::format(" id=\"section-{}\"", ++sections) : "";
         out += fmt::format("<h{0}{1}>{2}</h{0}>\n", heading.level, id, escape_html(heading.text));
       },
@@ -170,7 +176,7 @@ std::string to_html(Document const& document) {
       [&](Figure const& figure) { out += render(figure); },
   };
   for (Block const& block : document.blocks) std::visit(print, block);
-  return out + "</main>\n</body>\n</html>\n";
+  return out + "</main>\n" + interactive.scripts + "</body>\n</html>\n";
 }
 
 }  // namespace polhode::report

@@ -5,12 +5,13 @@
 #include <string_view>
 
 #include "report/document.hpp"
+#include "report/page.hpp"
 
 namespace polhode::report {
 
 std::string to_markdown(Document const& document);
-/// One page without outside resources: style and pictures are inside.
-std::string to_html(Document const& document);
+/// One page without outside resources: style and pictures are inside, and what is interactive, if anything is.
+std::string to_html(Document const& document, Interactive const& interactive = {});
 /// RFC 4180, with a header line and full precision.
 std::string to_csv(Table const& table);
 /// Every point that is drawn: panel, curve, x, y, mark.

@@ -11,8 +11,7 @@
 namespace polhode::report {
 namespace {
 
-Document document_of(results::Contents const& contents) {
-  Facts const facts(contents);
+Document document_of(Facts const& facts) {
   Document document{.title = "Polhode: report", .blocks = {}};
   document.say(
       Text({{fmt::format("Made from {} alone by ", counted(facts.runs.size(), "record", "records"))},
@@ -56,7 +55,8 @@ void make_folder(std::filesystem::path const& folder) {
 }  // namespace
 
 void write_report(results::Contents const& contents, std::filesystem::path const& out) {
-  Document document = document_of(contents);
+  Facts const facts(contents);
+  Document document = document_of(facts);
   make_folder(out / "tables");
   make_folder(out / "figures");
   for (Block& block : document.blocks) {
@@ -67,7 +67,7 @@ void write_report(results::Contents const& contents, std::filesystem::path const
     }
   }
   write(out / "report.md", to_markdown(document));
-  write(out / "report.html", to_html(document));
+  write(out / "report.html", to_html(document, interactive_part(facts, page_assets())));
 }
 
 }  // namespace polhode::report
