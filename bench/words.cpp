@@ -9,8 +9,7 @@ namespace {
 constexpr std::array family_names{"explicit_rk", "gauss", "lie_group", "rigid_body",
                                   "splitting",   "exact", "taylor",    "library"};
 constexpr std::array needs_names{
-    "none",       "flat",       "flat",      "group", "free_body", "rigid_body", "prescribed_rates",
-    "constraint", "constraint", "constraint"};
+    "none", "flat", "flat", "group", "free_body", "rigid_body", "prescribed_rates", "constraint", "constraint", "flat"};
 struct PreservesName {
   Preserves flag;
   char const* name;

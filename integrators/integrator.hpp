@@ -57,7 +57,7 @@ enum class Needs {
   prescribed_rates,  ///< an attitude whose rate depends on time alone
   constraint,
   constraint_on_group,
-  constraint_on_quaternion
+  constraint_on_quaternion  ///< one body on flat quaternions, whose norm is a constraint, alone or with others
 };
 
 /// What a method keeps to round-off or boundedly; a claim that the tests measure. Combine with |.
@@ -128,21 +128,20 @@ inline constexpr bool is_attitudes<Power<A, n>> = true;
 /// Why a method cannot run on a space; empty if it can.
 template <class M>
 constexpr std::string_view refusal(Needs needs) {
-  if (needs == Needs::constraint || needs == Needs::constraint_on_group || needs == Needs::constraint_on_quaternion) {
+  if (needs == Needs::constraint || needs == Needs::constraint_on_group) {
     if (!is_moving_body<M>) return "needs a constrained problem (heavy_top, variant dae)";
-    if (needs == Needs::constraint_on_group) return refusal<M>(Needs::group);
-    if constexpr (is_moving_body<M>)
-      if (needs == Needs::constraint_on_quaternion && !(M::flat && Point<typename M::Factor::Factor>::size == 4))
-        return "needs flat quaternions (formulation quaternion)";
-    return "";
+    return needs == Needs::constraint ? "" : refusal<M>(Needs::group);
   }
+  if (needs == Needs::constraint_on_quaternion && std::same_as<M, MovingBody<FlatQuaternion<typename M::Scalar>>>)
+    return "";
   if ((needs == Needs::free_body || needs == Needs::rigid_body) && !TurningBody<M>)
     return "needs one rigid body on quaternions or matrices";
   if (needs == Needs::prescribed_rates) {
     if (!is_attitudes<M>) return "needs an attitude under prescribed rates (problem coning)";
     return refusal<M>(Needs::group);
   }
-  if (needs == Needs::quaternion && !std::same_as<M, RigidBody<FlatQuaternion<typename M::Scalar>>>)
+  if ((needs == Needs::quaternion || needs == Needs::constraint_on_quaternion) &&
+      !std::same_as<M, RigidBody<FlatQuaternion<typename M::Scalar>>>)
     return "needs one body on flat quaternions (formulation quaternion)";
   if (needs == Needs::flat && !M::flat) return "needs flat coordinates";
   if (needs == Needs::group && M::flat) return "needs a rotation group (formulation s3 or so3)";
