@@ -10,12 +10,11 @@ namespace {
 
 using results::Record;
 
-std::string cost_text(double value, Measure measure) {
-  return measure == Measure::time ? duration(value) : significant(value, 4) + " evaluations";
-}
-
-std::string cost_text(Cost const& cost, Measure measure) {
-  return (cost.interpolated ? "≈ " : "") + cost_text(cost.value, measure);
+Entry cost_entry(Cost const& cost, Measure measure) {
+  Entry entry = measure == Measure::time ? cpu_time(results::CpuTime{cost.value, cost.low, cost.high})
+                                         : Entry(significant(cost.value, 4) + " evaluations", exact(cost.value));
+  if (cost.interpolated) entry.text = "≈ " + entry.text;
+  return entry;
 }
 
 /// Who reaches one accuracy on one problem at the least cost.
@@ -133,7 +132,7 @@ void add_winners(Document& document, Facts const& facts) {
       std::vector<Entry> row{instance.label, number(target), number(arcseconds(target))};
       for (Cost const* cost : {v.best, v.opponent}) {
         row.push_back(cost ? Entry(method_of(cost->run->of)) : Entry("nobody"));
-        row.push_back(cost ? Entry(cost_text(*cost, measure), exact(cost->value)) : Entry(absent));
+        row.push_back(cost ? cost_entry(*cost, measure) : Entry(absent));
         row.push_back(cost ? number(cost->low) : Entry(absent));
         row.push_back(cost ? number(cost->high) : Entry(absent));
       }

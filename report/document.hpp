@@ -38,6 +38,7 @@ struct Paragraph {
 struct Entry {
   std::string text;
   std::string exact;
+  std::string interval = {};  ///< where it lies, in the same unit: "12.1, 12.6"; printed in papers' tables
 
   Entry() = default;
   Entry(std::string shown, std::string in_csv = "") : text(std::move(shown)), exact(std::move(in_csv)) {}

@@ -35,6 +35,8 @@ constexpr char const* grey = "#9A9A9A";
 // The layout, in pixels.
 constexpr double plot_width = 300, wide_plot_width = 560, plot_height = 300, low_plot_height = 170;
 constexpr double left = 84, right = 18, top = 16, bottom = 54, title_height = 20, letter = 7.6, key_line = 22.5;
+/// Of an inch: a pixel of the SVG is a point of the PDF.
+constexpr double points = 72;
 constexpr double poster_width = 1000, poster_height = 420, poster_left = 96, poster_right = 22, poster_top = 46,
                  poster_bottom = 146, poster_key = 84;
 
@@ -263,10 +265,10 @@ std::string joined(std::vector<std::string> const& clauses) {
   return out;
 }
 
-/// Runs gnuplot on NAME.gp inside `folder`; returns what went wrong, or nothing.
-std::string run_gnuplot(std::string const& name, std::filesystem::path const& folder) {
-  std::string script = name + ".gp", program = "gnuplot", plain = "--default-settings";
-  std::array<char*, 4> arguments{program.data(), plain.data(), script.data(), nullptr};
+/// Runs gnuplot on NAME.gp inside `folder`, after the command `before`; returns what went wrong, or nothing.
+std::string run_gnuplot(std::string const& name, std::filesystem::path const& folder, std::string before) {
+  std::string script = name + ".gp", program = "gnuplot", plain = "--default-settings", first = "-e";
+  std::array<char*, 6> arguments{program.data(), plain.data(), first.data(), before.data(), script.data(), nullptr};
   std::string const log = name + ".log";
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
@@ -329,27 +331,38 @@ std::string gnuplot_script(Figure const& figure) {
     plots += "plot " + joined(clauses) + "\n";
   }
   return fmt::format(
-      "# Draws {0}.svg: gnuplot {0}.gp\n{1}"
-      "set terminal svg size {2:.0f},{3:.0f} enhanced font 'sans-serif,{5}' background '#FDFDFC'\n"
-      "set output '{0}.svg'\n"
+      "# Draws {0}.svg: gnuplot {0}.gp\n# Draws {0}.pdf: gnuplot -e pdf=1 {0}.gp\n{1}"
+      "if (!exists('pdf')) pdf = 0\n"
+      "if (!pdf) set terminal svg size {2:.0f},{3:.0f} enhanced font 'sans-serif,{5}' background '#FDFDFC'\n"
+      "if (!pdf) set output '{0}.svg'\n"
+      "if (pdf) set terminal pdfcairo size {7:.2f}in,{8:.2f}in enhanced font 'sans-serif,{5}' fontscale 0.77 linewidth "
+      "1.6\n"
+      "if (pdf) set output '{0}.pdf'\n"
       "set border 31 lc rgb '#555555'\nset tics textcolor rgb '#333333'\n"
       "set grid xtics ytics lt 1 lw 0.6 lc rgb '#DDDDDD'\nset xlabel offset 0, 0.4\nset title offset 0, -0.4\nset "
       "ylabel offset {6}, 0\n"
       "set multiplot\n{4}unset multiplot\nset output\n",
-      figure.name, data, at.width, at.height, plots, figure.poster ? 15 : 13, figure.poster ? 1.5 : 0);
+      figure.name, data, at.width, at.height, plots, figure.poster ? 15 : 13, figure.poster ? 1.5 : 0,
+      at.width / points, at.height / points);
 }
 
 void draw(Figure& figure, std::filesystem::path const& folder) {
   std::filesystem::path const script = folder / (figure.name + ".gp");
   std::filesystem::path const picture = folder / (figure.name + ".svg");
   std::error_code ignored;
-  std::filesystem::remove(picture, ignored);  // a picture of earlier records must not pass for this one
+  std::filesystem::path const print = folder / (figure.name + ".pdf");
+  // pictures of earlier records must not pass for these
+  std::filesystem::remove(picture, ignored);
+  std::filesystem::remove(print, ignored);
   std::ofstream out(script);
   out << gnuplot_script(figure);
   out.close();
   if (!out) throw ReportError(fmt::format("{}: cannot be written", script.string()));
-  figure.why_not = run_gnuplot(figure.name, folder);
+  figure.why_not = run_gnuplot(figure.name, folder, "pdf = 0");
   if (!figure.why_not.empty()) return;
+  // A gnuplot without Cairo draws no PDF: the report is complete all the same.
+  bool const printed = run_gnuplot(figure.name, folder, "pdf = 1").empty();
+  if (!printed) std::filesystem::remove(print, ignored);
   std::filesystem::remove(folder / (figure.name + ".log"), ignored);
   std::ifstream in(picture);
   std::ostringstream svg;

@@ -4,6 +4,7 @@
 
 #include <fstream>
 
+#include "report/latex.hpp"
 #include "report/render.hpp"
 #include "report/sections.hpp"
 #include "report/text.hpp"
@@ -60,7 +61,10 @@ void write_report(results::Contents const& contents, std::filesystem::path const
   make_folder(out / "tables");
   make_folder(out / "figures");
   for (Block& block : document.blocks) {
-    if (auto const* table = std::get_if<Table>(&block)) write(out / "tables" / (table->name + ".csv"), to_csv(*table));
+    if (auto const* table = std::get_if<Table>(&block)) {
+      write(out / "tables" / (table->name + ".csv"), to_csv(*table));
+      write(out / "tables" / (table->name + ".tex"), to_latex(*table));
+    }
     if (auto* figure = std::get_if<Figure>(&block)) {
       write(out / "figures" / (figure->name + ".csv"), to_csv(*figure));
       draw(*figure, out / "figures");

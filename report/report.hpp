@@ -13,9 +13,9 @@ struct ReportError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Writes report.md, report.html, tables/*.csv and figures/* into `out`, which is made if it does not exist. Files of
-/// an earlier report are overwritten. Figures are drawn by gnuplot; without it their data are written and the report
-/// says so. Whatever the records do not hold is said in a sentence. Throws ReportError.
+/// Writes report.md, report.html, tables/*.csv and *.tex, and figures/* (SVG, PDF, data) into `out`, which is made if
+/// it does not exist. Files of an earlier report are overwritten. Figures are drawn by gnuplot; without it their data
+/// are written and the report says so. Whatever the records do not hold is said in a sentence. Throws ReportError.
 void write_report(results::Contents const& contents, std::filesystem::path const& out);
 
 }  // namespace polhode::report

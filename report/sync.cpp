@@ -227,8 +227,7 @@ void add_networks(Document& document, Facts const& facts) {
         {exact(run->of.set.at("n").front()), run->of.formulation, run->of.integrator, control_of(run->of),
          std::string(name_of(run->status)), count(run->steps), count(run->evaluations),
          both ? number(double(*run->evaluations) / double(*run->steps)) : Entry(absent), number(run->norm_drift_max, 2),
-         number(run->allocations_per_step), events_of({run}),
-         run->cpu_time_s ? Entry(duration(run->cpu_time_s->median), exact(run->cpu_time_s->median)) : Entry(absent)});
+         number(run->allocations_per_step), events_of({run}), cpu_time(run->cpu_time_s)});
   }
   if (table.rows.empty()) return;
   document.heading(3, "Large networks");

@@ -29,12 +29,35 @@ Entry number(std::optional<double> value, int digits) {
   return {significant(*value, digits), exact(*value)};
 }
 
+namespace {
+
+struct Unit {
+  double per_second;
+  char const* name;
+};
+
+Unit unit_of(double seconds) {
+  if (seconds < 1e-6) return {1e9, "ns"};
+  if (seconds < 1e-3) return {1e6, "µs"};
+  if (seconds < 1) return {1e3, "ms"};
+  return {1, "s"};
+}
+
+}  // namespace
+
 std::string duration(double seconds, int digits) {
   if (!std::isfinite(seconds)) return absent;
-  if (seconds < 1e-6) return significant(seconds * 1e9, digits) + " ns";
-  if (seconds < 1e-3) return significant(seconds * 1e6, digits) + " µs";
-  if (seconds < 1) return significant(seconds * 1e3, digits) + " ms";
-  return significant(seconds, digits) + " s";
+  Unit const unit = unit_of(seconds);
+  return significant(seconds * unit.per_second, digits) + " " + unit.name;
+}
+
+Entry cpu_time(std::optional<results::CpuTime> const& time) {
+  if (!time) return absent;
+  Entry entry(duration(time->median), exact(time->median));
+  Unit const unit = unit_of(time->median);
+  entry.interval =
+      fmt::format("{}, {}", significant(time->low * unit.per_second), significant(time->high * unit.per_second));
+  return entry;
 }
 
 double degrees(double radians) {

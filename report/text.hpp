@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "report/document.hpp"
+#include "results/record.hpp"
 
 namespace polhode::report {
 
@@ -18,8 +19,10 @@ std::string significant(double value, int digits = 3);
 std::string exact(double value);
 /// A table's entry: rounded to read, exact in the CSV file.
 Entry number(std::optional<double> value, int digits = 3);
-/// A CPU time in the unit that suits it, e.g. "12.3 us"; seconds in the CSV file.
+/// A CPU time in the unit that suits it, e.g. "12.3 us".
 std::string duration(double seconds, int digits = 3);
+/// The same with its interval; seconds in the CSV file.
+Entry cpu_time(std::optional<results::CpuTime> const& time);
 
 double degrees(double radians);
 double arcseconds(double radians);
