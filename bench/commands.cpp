@@ -148,6 +148,8 @@ void add_run(CLI::App& app, int& code) {
                    "Regular expression over problem/variant/formulation/integrator/policy");
   verb->add_flag("--fresh", options->fresh, "Forget what the folder holds");
   verb->add_flag("--retry-failed", options->retry_failed, "Run again what failed");
+  verb->add_flag("--isolate", options->isolate,
+                 "Measure each cell in a process of its own: one that crashes is a record, the others go on");
   verb->add_flag("--dry-run", options->dry_run, "Say what would run, and about how long it would take");
   auto const shard = std::make_shared<std::string>();
   verb->add_option("--shard", *shard, "The K-th of N parts, for as many machines")->type_name("K/N");
@@ -170,7 +172,8 @@ void add_run(CLI::App& app, int& code) {
     if (options->dry_run) return;
     fmt::print("{}: {} cells: {} ok, {} refused, {} failed, {} already done\n", summary.out.string(), summary.cells,
                summary.ok, summary.refused, summary.failed, summary.skipped);
-    constexpr int interrupted = 130;
+    constexpr int interrupted = 130, run_failed = 4;
+    if (summary.died > 0) code = run_failed;
     if (summary.interrupted) {
       std::fputs("polhode: interrupted; the same command goes on from here\n", stderr);
       code = interrupted;

@@ -13,10 +13,12 @@
 #include <thread>
 
 #include "bench/catalogue.hpp"
-#include "bench/cell.hpp"
+#include "bench/cell_result.hpp"
+#include "bench/isolate.hpp"
 #include "bench/progress.hpp"
 #include "bench/provenance.hpp"
 #include "bench/timing.hpp"
+#include "results/folder_lock.hpp"
 #include "results/store.hpp"
 
 namespace polhode::bench {
@@ -34,7 +36,8 @@ struct Task {
   PreparedCell prepared;
   std::string id;
   bool keep_history = false;
-  Measured measured;
+  CellResult result;
+  bool died = false;  ///< its process did
 };
 
 std::string path_of(results::Cell const& cell) {
@@ -94,24 +97,6 @@ std::size_t skip_finished(std::vector<Task>& tasks, std::filesystem::path const&
   return std::erase_if(tasks, [&](Task const& task) { return done.contains(task.id); });
 }
 
-/// Thins a history to about 500 rows and puts the time in front.
-results::Series history_series(Task const& task) {
-  History const& history = task.measured.history;
-  results::Series series{.cell = task.id, .name = "history", .columns = {"t"}, .units = {"s"}, .rows = {}};
-  for (Column const& column : task.measured.columns) {
-    series.columns.push_back(column.name);
-    series.units.push_back(column.unit);
-  }
-  std::size_t const stride = std::max<std::size_t>(1, history.times.size() / 500);
-  for (std::size_t i = 0; i < history.times.size(); ++i) {
-    if (i % stride != 0 && i + 1 != history.times.size()) continue;
-    std::vector<double> row{history.times[i]};
-    row.insert(row.end(), history.rows[i].begin(), history.rows[i].end());
-    series.rows.push_back(std::move(row));
-  }
-  return series;
-}
-
 /// Threads of the accuracy pass.
 int processors_of(RunOptions const& options) {
   return options.threads > 0 ? options.threads : std::max(1, int(std::thread::hardware_concurrency()));
@@ -127,7 +112,10 @@ class Group {
     results::Cell const& cell = tasks_.front()->prepared.cell;
     std::string const name = cell.variant.empty() ? cell.problem : cell.problem + " " + cell.variant;
     progress_.say(name + ": accuracy");
-    measure_all(options);
+    if (options.isolate)
+      measure_apart(options);
+    else
+      measure_all(options);
     if (interrupted) return;
     if (timing.enabled) {
       progress_.say(name + ": timing");
@@ -135,10 +123,8 @@ class Group {
     }
     if (interrupted) return;
     for (Task* task : tasks_) {
-      if (!task->measured.drift.rows.empty()) writer_.series(task->measured.drift);
-      if (task->keep_history && !task->measured.history.rows.empty()) writer_.series(history_series(*task));
-      if (task->keep_history && !task->measured.invariants.rows.empty()) writer_.series(task->measured.invariants);
-      writer_.run(task->measured.record);
+      for (results::Series const& series : task->result.series) writer_.series(series);
+      writer_.run(task->result.record);
     }
   }
 
@@ -156,9 +142,7 @@ class Group {
             if (trouble) return;
             writer_.begin(task.id, build_id());
           }
-          task.measured.record = task.prepared.refusal.empty() ? results::Record{} : refused(task.prepared, build_id());
-          if (task.prepared.refusal.empty())
-            task.measured = measure(task.prepared, references_, build_id(), {options.timeout, &interrupted});
+          task.result = measured(task, options);
         } catch (Interrupted const&) {
           return;
         } catch (...) {
@@ -176,12 +160,45 @@ class Group {
     if (trouble) std::rethrow_exception(trouble);
   }
 
+  CellResult measured(Task const& task, RunOptions const& options) const {
+    return result_of(measure(task.prepared, references_, build_id(), {options.timeout, &interrupted}),
+                     task.keep_history);
+  }
+
+  /// The same with a process for each cell. There is no other thread then, and the references are made before.
+  void measure_apart(RunOptions const& options) {
+    constexpr double grace = 5;  // [s]: who hears the time limit has ended by then
+    for (Task const* task : tasks_)
+      if (task->prepared.refusal.empty()) references_.of(task->prepared);
+    in_children(
+        tasks_.size(), processors_of(options), options.timeout > 0 ? options.timeout + grace : 0, interrupted,
+        [&](std::size_t i) { writer_.begin(tasks_[i]->id, build_id()); },
+        [&](std::size_t i) { return to_text(measured(*tasks_[i], options)); },
+        [&](std::size_t i, Ended const& ended) {
+          Task& task = *tasks_[i];
+          task.died = !ended.died.empty();
+          task.result =
+              task.died ? CellResult{.series = {}, .record = died(task, ended, options)} : cell_result_from(ended.text);
+          progress_.advance();
+        });
+  }
+  static results::Record died(Task const& task, Ended const& ended, RunOptions const& options) {
+    results::Record record;
+    record.cell = task.id;
+    record.build = build_id();
+    record.of = task.prepared.cell;
+    record.status = ended.late ? results::Status::timeout : results::Status::crashed;
+    record.reason = ended.late ? fmt::format("killed: no step ended within {:g} s of wall time", options.timeout)
+                               : "its process ended: " + ended.died;
+    return record;
+  }
+
   void time_all(Timing const& timing) {
     std::vector<TimedCell> cells;
     std::vector<Task*> timed;
     for (Task* task : tasks_) {
       results::Cell const& cell = task->prepared.cell;
-      results::Status const status = task->measured.record.status;
+      results::Status const status = task->result.record.status;
       if (status != results::Status::ok && status != results::Status::inaccurate) {
         progress_.advance();
         continue;
@@ -193,7 +210,7 @@ class Group {
     double const part = 1.0 / timing.repetitions;
     std::vector<TimedResult> const results = time_cells(cells, timing, interrupted, [&] { progress_.advance(part); });
     for (std::size_t i = 0; i < timed.size(); ++i) {
-      results::Record& record = timed[i]->measured.record;
+      results::Record& record = timed[i]->result.record;
       record.cpu_time_s = results[i].cpu_time;
       if (results[i].allocations && record.steps && *record.steps > 0)
         record.allocations_per_step = double(*results[i].allocations) / double(*record.steps);
@@ -284,6 +301,9 @@ RunSummary run_suite(Suite const& suite, RunOptions const& options) {
   std::error_code error;
   std::filesystem::create_directories(summary.out, error);
   if (error) throw results::StoreError(fmt::format("{}: {}", summary.out.string(), error.message()));
+  bool const alone = options.shards <= 1 || options.fresh;
+  results::FolderLock const lock =
+      alone ? results::FolderLock(summary.out) : results::FolderLock(summary.out, options.shard, options.shards);
   if (options.fresh) {
     for (auto const& entry : std::filesystem::directory_iterator(summary.out))
       if (entry.path().extension() == ".jsonl") std::filesystem::remove(entry.path());
@@ -320,11 +340,12 @@ RunSummary run_suite(Suite const& suite, RunOptions const& options) {
     Group(groups[subject], references, writer, progress).run(suite.timing, options);
     if (interrupted) break;
     for (Task* task : groups[subject]) {
-      results::Status const status = task->measured.record.status;
+      results::Status const status = task->result.record.status;
       summary.ok += status == results::Status::ok;
       summary.refused += status == results::Status::refused;
       summary.failed += status != results::Status::ok && status != results::Status::refused;
-      task->measured = {};  // its record is on disk
+      summary.died += task->died;
+      task->result = {};  // it is on disk
     }
   }
   summary.interrupted = interrupted;

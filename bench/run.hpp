@@ -21,6 +21,7 @@ struct RunOptions {
   bool fresh = false;         ///< forget what the folder holds
   bool retry_failed = false;  ///< run again what did not end ok
   bool dry_run = false;       ///< say what would run
+  bool isolate = false;       ///< the accuracy pass of each cell in a process of its own
   double timeout = 60;        ///< per cell [s]
   int threads = 0;            ///< of the accuracy pass; 0: one per processor
   int shard = 1, shards = 1;  ///< which of how many parts to run
@@ -29,6 +30,7 @@ struct RunOptions {
 struct RunSummary {
   std::filesystem::path out;
   std::size_t cells = 0, skipped = 0, ok = 0, refused = 0, failed = 0;
+  std::size_t died = 0;  ///< of the failed: cells whose process ended by a signal or an exit
   bool interrupted = false;
 };
 
