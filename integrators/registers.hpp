@@ -8,8 +8,9 @@ namespace polhode {
 enum class Registers { of_the_unit = register_bytes, avx2 = 32, avx512 = 64 };
 
 // Calls between functions for different registers must not pass lanes by value. In a kernel everything is inlined, but
-// only when the unit is optimised; what is marked noinline takes references.
-#if defined(__x86_64__) && !defined(__SSE3__) && defined(__OPTIMIZE__)
+// only when the unit is optimised; what is marked noinline takes references. Under the sanitizers one set is enough: each
+// takes g++ a minute.
+#if defined(__x86_64__) && !defined(__SSE3__) && defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__)
 inline constexpr bool chooses_registers = true;
 #define POLHODE_TARGET(arch) [[gnu::target(arch)]]
 // At the end of a function with a target of its own. g++ 12 may forget to clear the upper halves, and then all code for
@@ -23,7 +24,7 @@ inline constexpr bool chooses_registers = false;
 
 /// The widest that this machine and this unit know.
 inline Registers widest_registers() {
-#if defined(__x86_64__) && !defined(__SSE3__) && defined(__OPTIMIZE__)
+#if defined(__x86_64__) && !defined(__SSE3__) && defined(__OPTIMIZE__) && !defined(__SANITIZE_ADDRESS__)
   static Registers const widest = __builtin_cpu_supports("x86-64-v4")   ? Registers::avx512
                                   : __builtin_cpu_supports("x86-64-v3") ? Registers::avx2
                                                                         : Registers::of_the_unit;
