@@ -92,6 +92,16 @@ std::string testcase(CheckSubject const& subject, Row const& row) {
   return text + "  </testcase>\n";
 }
 
+/// For workflow commands; in a property, colons and commas end it.
+std::string github(std::string_view text, bool property) {
+  std::string safe;
+  for (char const c : text) {
+    bool const special = c == '%' || c == '\r' || c == '\n' || (property && (c == ':' || c == ','));
+    safe += special ? fmt::format("%{:02X}", static_cast<unsigned char>(c)) : std::string(1, c);
+  }
+  return safe;
+}
+
 /// A cell of a Markdown table.
 std::string markdown(std::string_view text) {
   std::string safe;
@@ -157,6 +167,21 @@ std::string markdown_text(CheckSubject const& subject, std::vector<Row> const& r
     text += fmt::format("\n{}:{}, {}:\n\n", markdown(subject.file), row.line, markdown(row.field));
     for (std::string const& failure : row.failures) text += fmt::format("- {}\n", markdown(failure));
   }
+  return text;
+}
+
+std::string github_text(CheckSubject const& subject, std::vector<Row> const& rows) {
+  constexpr std::size_t most = 10;
+  std::vector<std::string> lines;
+  for (Row const& row : rows) {
+    if (is_good(row.verdict)) continue;
+    std::string const place = fmt::format("file={},line={},title={}", github(subject.file, true), row.line,
+                                          github("polhode check: " + row.field, true));
+    for (std::string const& failure : row.failures)
+      lines.push_back(fmt::format("::error {}::{}\n", place, github(failure, false)));
+  }
+  std::string text;
+  for (std::size_t i = 0; i < std::min(lines.size(), most); ++i) text += lines[i];
   return text;
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// What a check found, for four readers: a terminal, a log, a CI server (JUnit XML), a summary page (Markdown).
+/// What a check found, for its readers: a terminal, a log, CI servers (JUnit XML, GitHub), a summary page (Markdown).
 #include <string>
 #include <vector>
 
@@ -22,5 +22,8 @@ std::string table_text(CheckSubject const& subject, std::vector<Row> const& rows
 /// One testsuite, one testcase for each row. Text that XML cannot hold is replaced.
 std::string junit_text(CheckSubject const& subject, std::vector<Row> const& rows);
 std::string markdown_text(CheckSubject const& subject, std::vector<Row> const& rows);
+/// Failures as GitHub's workflow commands, `::error file=...,line=...::...`, one line each; at most 10, for GitHub
+/// shows no more of a step.
+std::string github_text(CheckSubject const& subject, std::vector<Row> const& rows);
 
 }  // namespace polhode::bench

@@ -17,6 +17,7 @@
 #include "bench/check.hpp"
 #include "bench/check_report.hpp"
 #include "bench/commands.hpp"
+#include "results/file_name.hpp"
 #include "results/store.hpp"
 
 namespace polhode::bench {
@@ -44,6 +45,21 @@ void write_file(std::string const& file, std::string const& text) {
   out << text;
   out.close();
   if (!out) throw results::StoreError(fmt::format("{}: cannot be written: {}", file, std::strerror(errno)));
+}
+
+/// Where GitHub runs this: failures as annotations, and the summary of the step. The file belongs to the whole step, so
+/// it is continued.
+void tell_github(CheckSubject const& subject, std::vector<Row> const& rows) {
+  char const* actions = std::getenv("GITHUB_ACTIONS");
+  if (actions == nullptr || std::strcmp(actions, "true") != 0) return;
+  fmt::print("{}", github_text(subject, rows));
+  char const* summary = std::getenv("GITHUB_STEP_SUMMARY");
+  if (summary == nullptr || *summary == '\0') return;
+  errno = 0;
+  std::ofstream out(summary, std::ios::binary | std::ios::app);
+  out << markdown_text(subject, rows) << '\n';
+  out.close();
+  if (!out) throw results::StoreError(fmt::format("{}: cannot be written: {}", summary, std::strerror(errno)));
 }
 
 /// When and from which commit, as far as the meta tells.
@@ -81,13 +97,9 @@ Checked open_folder(std::string const& folder) {
 }
 
 std::filesystem::path golden_file(CheckOptions const& options, std::string const& suite) {
-  std::string name = suite;
-  for (char& c : name) {
-    if (c == '/' || c == '\0') c = '_';  // a suite's name may be anything
-  }
   std::filesystem::path const folder =
       options.golden.empty() ? references_folder().parent_path() / "golden" : std::filesystem::path(options.golden);
-  return folder / (name + ".jsonl");
+  return folder / (results::file_name_of(suite) + ".jsonl");
 }
 
 // --- Update ----------------------------------------------------------------------------------------------------------
@@ -153,6 +165,7 @@ int check(CheckOptions const& options) {
   fmt::print("{}", table_text(checked.subject, rows, results::outlet_of(STDOUT_FILENO)));
   if (!options.junit.empty()) write_file(options.junit, junit_text(checked.subject, rows));
   if (!options.markdown.empty()) write_file(options.markdown, markdown_text(checked.subject, rows));
+  tell_github(checked.subject, rows);
   bool const good = std::ranges::all_of(rows, [](Row const& row) { return is_good(row.verdict); });
   return good ? 0 : expectation_failed;
 }

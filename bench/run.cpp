@@ -4,8 +4,10 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstring>
 #include <fstream>
 #include <map>
 #include <regex>
@@ -18,6 +20,7 @@
 #include "bench/progress.hpp"
 #include "bench/provenance.hpp"
 #include "bench/timing.hpp"
+#include "results/file_name.hpp"
 #include "results/folder_lock.hpp"
 #include "results/store.hpp"
 
@@ -249,6 +252,14 @@ void say_what_would_run(std::vector<Task> const& tasks, Timing const& timing, Ru
   fmt::print("{} cells, about {} min {} s\n", tasks.size(), seconds / 60, seconds % 60);
 }
 
+void write_suite(std::filesystem::path const& file, std::string const& text) {
+  errno = 0;
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) throw results::StoreError(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
+}
+
 /// What users should know of their choices, each once.
 std::set<std::string> warnings_of(std::vector<Task> const& tasks) {
   std::set<std::string> warnings;
@@ -268,6 +279,7 @@ void interruptible() {
   auto const note = [](int) { interrupted = true; };
   std::signal(SIGINT, note);
   std::signal(SIGTERM, note);
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is an error of the write, with a name
 }
 
 std::vector<std::string> suite_names() {
@@ -291,7 +303,8 @@ RunSummary run_suite(Suite const& suite, RunOptions const& options) {
   std::vector<Task> tasks = prepare_all(suite, options.filter);
   take_shard(tasks, options);
   RunSummary summary;
-  summary.out = options.out.empty() ? std::filesystem::path("polhode-results") / suite.name : options.out;
+  summary.out =
+      options.out.empty() ? std::filesystem::path("polhode-results") / results::file_name_of(suite.name) : options.out;
   summary.cells = tasks.size();
   if (options.dry_run) {
     say_what_would_run(tasks, suite.timing, options);
@@ -311,7 +324,7 @@ RunSummary run_suite(Suite const& suite, RunOptions const& options) {
   }
   summary.skipped = skip_finished(tasks, summary.out, options.retry_failed);
   if (tasks.empty()) return summary;
-  std::ofstream(summary.out / "suite.toml") << suite.text;
+  write_suite(summary.out / "suite.toml", suite.text);
   results::write_catalogue(summary.out, catalogue_text());
   for (std::filesystem::path const& file : suite.files) {
     std::filesystem::path const copy = summary.out / file.filename();
