@@ -99,13 +99,24 @@ std::string inlined(Figure const& figure) {
   return svg;
 }
 
-std::string render(Figure const& figure) {
+/// Pictures in one page take no more than this [bytes]: further ones are named.
+constexpr std::size_t most_pictures = 6'000'000;
+
+/// `room` is what is left for pictures.
+std::string render(Figure const& figure, std::size_t& room) {
   std::string const caption = render(figure.caption);
   std::string const data = made_by("figures/" + figure.name + ".csv");
   if (!figure.svg) {
     return fmt::format("<p id=\"{0}\"><b>Figure {0}.</b> {1} The picture was not drawn: {2}. {3}</p>\n", figure.name,
                        caption, escape_html(figure.why_not), data);
   }
+  if (figure.svg->size() > room) {
+    return fmt::format(
+        "<p id=\"{0}\"><b>Figure {0}.</b> {1} The picture stands in <a href=\"figures/{0}.svg\">figures/{0}.svg</a>: "
+        "this page holds no more. {2}</p>\n",
+        figure.name, caption, data);
+  }
+  room -= figure.svg->size();
   return fmt::format(
       "<figure id=\"{0}\">\n<div class=\"wide\">{1}</div>\n<figcaption><b>Figure {0}.</b> {2} "
       "{3}</figcaption>\n</figure>\n",
@@ -165,6 +176,7 @@ std::string to_html(Document const& document, Interactive const& interactive) {
       "<style>{1}{2}</style>\n</head>\n<body>\n<h1>{0}</h1>\n{3}<main>\n",
       title, style, interactive.style, contents(document, interactive));
   int sections = 0;
+  std::size_t room = most_pictures;
   auto const print = Overload{
       [&](Heading const& heading) {
         if (heading.level == 2 && sections == 1) out += interactive.section;
@@ -173,7 +185,7 @@ std::string to_html(Document const& document, Interactive const& interactive) {
       },
       [&](Paragraph const& paragraph) { out += fmt::format("<p>{}</p>\n", render(paragraph.text)); },
       [&](Table const& table) { out += render(table); },
-      [&](Figure const& figure) { out += render(figure); },
+      [&](Figure const& figure) { out += render(figure, room); },
   };
   for (Block const& block : document.blocks) std::visit(print, block);
   return out + "</main>\n" + interactive.scripts + "</body>\n</html>\n";

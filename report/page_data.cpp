@@ -27,7 +27,7 @@ constexpr int bins = 40;
 /// Numbers of all histories together: what keeps the page small.
 constexpr std::size_t most_numbers = 250'000;
 /// Different bodies whose polhodes are drawn.
-constexpr std::size_t most_spins = 12;
+constexpr std::size_t most_spins = 8;
 
 /// Texts that repeat, each once; a column holds their places.
 class Dictionary {

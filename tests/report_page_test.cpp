@@ -1,6 +1,7 @@
 // The interactive part of the report: its data are the records', no text of a record leaves its place, polhodes lie
 // where both integrals of motion put them, and many records stay few seconds and a page that can be opened.
-#include <chrono>
+#include <sys/resource.h>
+
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -173,6 +174,19 @@ TEST(Page, SmallEnoughToSend) {
   EXPECT_LT(fs::file_size(folder.path / "report.html"), 6'000'000U);
 }
 
+/// Of this process and of the gnuplots that it waited for: others on the machine do not count.
+double processor_seconds() {
+  double sum = 0;
+  for (int const who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+    rusage used{};
+    ::getrusage(who, &used);
+    for (timeval const& t : {used.ru_utime, used.ru_stime}) {
+      sum += static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    }
+  }
+  return sum;
+}
+
 TEST(Page, TwentyThousandRecords) {
   Contents c;
   std::vector<std::string> const methods{"rk4", "dopri5", "gauss2", "gauss4", "cf4", "odeint_rk4", "cvode_adams", "x"};
@@ -183,18 +197,17 @@ TEST(Page, TwentyThousandRecords) {
     r.cell += fmt::format("/{}", i / 80);
     if (i % 97 == 0) r.status = results::Status::diverged;
     c.records.push_back(r);
-    if (i % 10 == 0) c.series.push_back(drift_of(r));
+    if (i % 5 == 0) c.series.push_back(drift_of(r));
   }
   Folder const folder;
-  auto const start = std::chrono::steady_clock::now();
+  double const before = processor_seconds();
   markdown_of(c, folder.path);
-  double const seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  EXPECT_LT(seconds, 60) << "20 s where nobody else works";
-  EXPECT_LT(fs::file_size(folder.path / "report.html"), 30'000'000U);
+  EXPECT_LT(processor_seconds() - before, 20);
+  EXPECT_LT(fs::file_size(folder.path / "report.html"), 20'000'000U);
   Json const data = page_data(Facts(c));
   EXPECT_EQ(data["records"]["count"], 20'000);
   EXPECT_GT(data["series_left_out"].get<int>(), 0);
-  EXPECT_LE(data["spins"].size(), 12U);
+  EXPECT_LE(data["spins"].size(), 8U);
 }
 
 TEST(Polhode, LiesOnBothQuadrics) {
