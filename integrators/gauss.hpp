@@ -44,7 +44,9 @@ struct GaussEntry : Gauss<s> {
       .order = 2 * s,
       .preserves = keeps_norm | keeps_energy | keeps_momentum | is_symmetric,
       .source = "Hairer, Lubich & Wanner, II.1.3; round-off: Hairer, McLachlan & Razakarivony (2008)",
-      .pitfall = "on (q, omega) not symplectic: the direction of L errs by O(h^2s)"};
+      .pitfall = s == 1 ? "on (q, omega) not symplectic: the direction of L errs by O(h^2s)"
+                        : "on (q, omega) not symplectic: the direction of L errs by O(h^2s); on a group not symmetric: "
+                          "there lie_gauss is"};
 };
 
 }  // namespace polhode

@@ -1,10 +1,15 @@
 #include "tests/orders.hpp"
+#include "tests/symmetry.hpp"
 
 namespace polhode {
 namespace {
 
 TEST(Order, OfTheExplicitMethods) {
   EXPECT_GE(test::expect_orders(ExplicitMethods{}), 25);
+}
+
+TEST(Symmetry, OfTheExplicitMethods) {
+  EXPECT_GE(test::expect_symmetry_as_claimed(ExplicitMethods{}), 20);
 }
 
 }  // namespace

@@ -203,19 +203,6 @@ TEST(Preserves, NotEveryMethodKeepsEverything) {
   for (char const* what : {"norm", "energy", "momentum", "direction"}) EXPECT_GE(losers[what], 2) << what;
 }
 
-/// Greatest defect of the constraint over a run.
-template <Space M>
-class DefectWatch final : public bench::Watch<M> {
- public:
-  double worst = 0;
-  std::int64_t steps = 0;
-  void at_stop(bench::Stop const&, Point<M> const&) override {}
-  void after_step(double, Point<M> const& x, Projections const&) override {
-    worst = std::max(worst, double(M::defect(x)));
-    ++steps;
-  }
-};
-
 TEST(Preserves, MethodsOnGroupsKeepTheNormOverTenThousandSteps) {
   int checked = 0;
   for (std::string_view formulation : bench::formulation_names()) {
@@ -226,13 +213,11 @@ TEST(Preserves, MethodsOnGroupsKeepTheNormOverTenThousandSteps) {
             if constexpr (!M::flat) {
               if (!method.refusal.empty() || !method.fixed || !(method.info->preserves & keeps_norm)) continue;
               auto const field = std::get<std::unique_ptr<Erased<M>>>(choice->in(formulation));
-              bench::Schedule schedule;
-              schedule.t_end = 1000;
-              bench::Plan const plan{.stops = bench::stops_of(schedule), .control = FixedStep{0.1}};
-              DefectWatch<M> watch;
+              bench::Plan const plan = test::ten_thousand_steps();
+              test::DefectWatch<M> watch;
               EXPECT_EQ(method.solve(*field, plan, watch).status, Status::ok) << method.info->name;
               EXPECT_EQ(watch.steps, 10'000);
-              EXPECT_LT(watch.worst, 1e-13) << method.info->name << " as " << formulation;
+              EXPECT_LT(watch.worst, test::round_off_of_norm) << method.info->name << " as " << formulation;
               ++checked;
             }
           }

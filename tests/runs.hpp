@@ -1,5 +1,6 @@
 #pragma once
 /// Runs of cells for tests: a cell in one line, its record, its history.
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -73,5 +74,25 @@ inline CellUnderTest a_cell(std::string_view problem, std::string_view formulati
   it.cell.integrator = integrator;
   return it;
 }
+
+/// How long methods on groups are watched, what rounding may do to the norm meanwhile, and the watch.
+inline bench::Plan ten_thousand_steps() {
+  bench::Schedule schedule;
+  schedule.t_end = 1000;
+  return {.stops = bench::stops_of(schedule), .control = FixedStep{0.1}};
+}
+inline constexpr double round_off_of_norm = 1e-13;
+/// Greatest defect of the constraint over a run.
+template <Space M>
+class DefectWatch final : public bench::Watch<M> {
+ public:
+  double worst = 0;
+  std::int64_t steps = 0;
+  void at_stop(bench::Stop const&, Point<M> const&) override {}
+  void after_step(double, Point<M> const& x, Projections const&) override {
+    worst = std::max(worst, double(M::defect(x)));
+    ++steps;
+  }
+};
 
 }  // namespace polhode::test
