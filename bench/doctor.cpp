@@ -1,7 +1,6 @@
 #include "bench/doctor.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <sched.h>
 
 #include <algorithm>
@@ -9,14 +8,9 @@
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
-#include <map>
 #include <nlohmann/json.hpp>
-#include <set>
 
-#include "bench/cell.hpp"
-#include "bench/provenance.hpp"
-#include "bench/run.hpp"
-#include "integrators/ensemble.hpp"
+#include "results/record.hpp"
 
 namespace polhode::bench {
 namespace {
@@ -52,14 +46,6 @@ double percentile(std::vector<double> values, double part) {
   return values[std::min(values.size() - 1, std::size_t(part * double(values.size())))];
 }
 
-/// Rivals by why they are not here; "" for those that are.
-std::map<std::string, std::vector<std::string>> rivals() {
-  std::map<std::string, std::vector<std::string>> by_reason;
-  for (IntegratorWord const& word : vocabulary().integrators)
-    if (word.rival) by_reason[word.not_built].push_back(word.name);
-  return by_reason;
-}
-
 Finding processors(fs::path const& root) {
   Finding finding{"processors", first_line(root / "sys/devices/system/cpu/online"), ""};
   cpu_set_t cpus;
@@ -72,7 +58,8 @@ Finding processors(fs::path const& root) {
 Finding load_of(fs::path const& root) {
   std::string const line = first_line(root / "proc/loadavg");
   double const running = number_in(line);
-  Finding finding{"load", fmt::format("{:.2f} in the last minute", running), ""};
+  Finding finding{"load", "not readable", ""};
+  if (std::isfinite(running)) finding.value = fmt::format("{:.2f} in the last minute", running);
   constexpr double quiet = 0.5;
   if (running > quiet) finding.trouble = "others are computing; wait until the load is below 0.5";
   return finding;
@@ -153,40 +140,6 @@ Finding timer_finding(TimerQuality const& quality) {
   if (quality.resolution > fine) finding.trouble = "the clock is too coarse for solves of microseconds";
   if (quality.jitter > steady) finding.trouble = "equal work does not take equal time: something else is going on";
   return finding;
-}
-
-std::vector<Finding> what_is_built() {
-  results::Meta const meta = provenance();
-  std::vector<Finding> findings;
-  bool const dirty = meta.at("git_dirty") == "true";
-  findings.push_back({"polhode",
-                      fmt::format("{} ({}{}), build {}", meta.at("version"), meta.at("git_commit"),
-                                  dirty ? ", modified" : "", meta.at("build")),
-                      ""});
-  findings.push_back({"compiler", meta.at("compiler"), ""});
-  std::string const& flags = meta.at("flags");
-  bool const optimised = flags.find("-O2") != std::string::npos || flags.find("-O3") != std::string::npos;
-  findings.push_back({"flags", flags, optimised ? "" : "not optimised; build with the preset `bench`"});
-  findings.push_back({"libraries", meta.at("libraries"), ""});
-  for (auto const& [reason, names] : rivals())
-    findings.push_back({reason.empty() ? "rivals" : "rivals left out",
-                        fmt::format("{}{}", fmt::join(names, " "), reason.empty() ? "" : " (" + reason + ")"), ""});
-#ifdef POLHODE_RACES
-  findings.push_back({"timed runs", "built in", ""});
-#else
-  findings.push_back({"timed runs", "not built (POLHODE_RACES=OFF)", "nothing is timed"});
-#endif
-  findings.push_back(
-      {"vectors",
-       fmt::format("{} bytes everywhere; ensembles {}, {} bytes on this machine", register_bytes,
-                   chooses_registers ? "choose at run time" : "are compiled for one instruction set",
-                   widest_registers() == Registers::of_the_unit ? register_bytes : int(widest_registers())),
-       ""});
-  bool const data = !suite_names().empty() && fs::is_directory(references_folder());
-  findings.push_back(
-      {"data", fmt::format("{} suites in {}", suite_names().size(), suites_folder().string()),
-       data ? "" : "suites or references are missing: references are made on the fly; set POLHODE_DATA"});
-  return findings;
 }
 
 std::vector<Finding> machine_state(fs::path const& root) {

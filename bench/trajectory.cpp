@@ -77,10 +77,12 @@ class Reader {
 
   /// The next line that holds something; false at the end. Never more of it in memory than a line may have.
   bool next_line() {
-    while (in_.peek() != std::istream::traits_type::eof()) {
+    constexpr int end = std::istream::traits_type::eof();
+    std::streambuf& bytes = *in_.rdbuf();
+    while (in_.peek() != end) {
       ++number_;
       line_.clear();
-      for (int c = in_.get(); c != '\n' && c != std::istream::traits_type::eof(); c = in_.get()) {
+      for (int c = bytes.sbumpc(); c != '\n' && c != end; c = bytes.sbumpc()) {
         if (line_.size() == longest_line) refuse("longer than 64 MiB: not a table of numbers");
         line_ += char(c);
       }
