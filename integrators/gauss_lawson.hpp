@@ -28,10 +28,12 @@ struct LaneTableau {
 
   alignas(64) Matrix mu, beyond;  ///< beyond[j][k] as in GaussCoefficients
   alignas(64) Row b, c;
+  double half_of_last;   ///< 1 / (2 b_s)
   alignas(64) Row tail;  ///< sum_j tail_j L_j is h times the slopes' coefficient of Legendre's polynomial s - 1
 
   LaneTableau() {
     GaussMu<double> const table(s);
+    half_of_last = 0.5 / table.b[s - 1];
     for (std::size_t j = 0; j < s; ++j) {
       b[j] = table.b[j];
       c[j] = table.c[j];
@@ -64,7 +66,7 @@ struct LawsonMemory {
   double last_step;                                           ///< [s]; 0: there is none
   double damping;                                             ///< lambda [1/s]; negative: not known
   double damped_for = 0;                                      ///< lambda h of the matrices
-  alignas(64) Matrix damped;                                  ///< (1 + lambda a h)^-1 mu, as LaneTableau has mu
+  alignas(64) Matrix damped;                                  ///< (1 + lambda a h)^-1 a, [j][i] as in LaneTableau
   alignas(64) std::array<double, std::size_t(s)> damped_one;  ///< (1 + lambda a h)^-1 (1, ..., 1)
   std::int64_t iterations = 0;
   bool unconverged;
@@ -118,7 +120,7 @@ struct LawsonStep {
     bool const knows = ratio < 3;
     V w, mean;
     if (knows)
-      extrapolate(table, memory, ratio, w0, w, mean);
+      extrapolate(table, memory, ratio, x, w, mean);
     else
       begin(field, damps, t, h, hc, q0, w0, memory, w, mean);
     double const damped = memory.damping * h;
@@ -130,13 +132,14 @@ struct LawsonStep {
     detail::SinCosLanes<s, bytes> const half(0.5 * (turning * hc));
     V const axis = (1.0 / turning) * mean;
     Q const e{half.sin * axis.x, half.sin * axis.y, half.sin * axis.z, half.cos};
-    Mat3<L> const turn = matrix(e);
+    Mat3<L> const full = matrix(e), turn{0.5 * full.e1, 0.5 * full.e2, 0.5 * full.e3};
 
     Columns mu;  // in registers
-    unroll<s>([&](auto j) POLHODE_LAMBDA { mu.of[j] = L::load(table.mu[j].data()); });
+    unroll<s>([&](auto j) POLHODE_LAMBDA { mu.of[j] = (h * table.b[j]) * L::load(table.mu[j].data()); });
     alignas(64) double K[3][s], Kp[4][s];
     L const per_rate = 1.0 / (turning + abs_of(w0.x) + abs_of(w0.y) + abs_of(w0.z));
     double const lambda = memory.damping;
+    Vec3<double> const begun = x.second + memory.carry;
     Q p = q0;
     V dw;
     bool solved = rule.sweeps > 0;
@@ -145,22 +148,19 @@ struct LawsonStep {
     int sweep = 0;
     for (; sweep < most;) {
       auto const v = field(stage_times, typename RigidBody<FlatQuaternion<L>>::Point{p * e, w});
-      dw = {hb * v.second.x, hb * v.second.y, hb * v.second.z};
+      dw = v.second;
       V w_next;
       if (shifts) [[unlikely]] {
-        L const pull = lambda * hb, one = L::load(memory.damped_one.data());
-        store(V{dw.x + pull * w.x, dw.y + pull * w.y, dw.z + pull * w.z}, K);
-        w_next = {(x.second.x + memory.carry.x) * one + times(memory.damped, K[0]),
-                  (x.second.y + memory.carry.y) * one + times(memory.damped, K[1]),
-                  (x.second.z + memory.carry.z) * one + times(memory.damped, K[2])};
+        L const one = L::load(memory.damped_one.data());
+        store(V{h * (dw.x + lambda * w.x), h * (dw.y + lambda * w.y), h * (dw.z + lambda * w.z)}, K);
+        w_next = {begun.x * one + times(memory.damped, K[0]), begun.y * one + times(memory.damped, K[1]),
+                  begun.z * one + times(memory.damped, K[2])};
       } else {
         store(dw, K);
-        w_next = {x.second.x + (memory.carry.x + times(mu, K[0])), x.second.y + (memory.carry.y + times(mu, K[1])),
-                  x.second.z + (memory.carry.z + times(mu, K[2]))};
+        w_next = {begun.x + times(mu, K[0]), begun.y + times(mu, K[1]), begun.z + times(mu, K[2])};
       }
       // Rates are of the newest omega: what the torque feels of the attitude then converges twice as fast.
-      Q const dp = quaternion_rate(p, turn * ((v.first - mean) + (w_next - w)));
-      store(Q{hb * dp.x, hb * dp.y, hb * dp.z, hb * dp.w}, Kp);
+      store(turned_by(p, turn * (w_next + ((v.first - w) - mean))), Kp);
       Q const p_next{x.first.x + times(mu, Kp[0]), x.first.y + times(mu, Kp[1]), x.first.z + times(mu, Kp[2]),
                      x.first.w + times(mu, Kp[3])};
       ++sweep;
@@ -183,9 +183,10 @@ struct LawsonStep {
 
     Result result;
     result.solved = solved;
-    dw.x.store(result.slopes[0].data());
-    dw.y.store(result.slopes[1].data());
-    dw.z.store(result.slopes[2].data());
+    (hb * dw.x).store(result.slopes[0].data());
+    (hb * dw.y).store(result.slopes[1].data());
+    (hb * dw.z).store(result.slopes[2].data());
+    for (auto& row : Kp) (hb * L::load(row)).store(row);
     Quat<double> const moved{x.first.x + total(Kp[0]), x.first.y + total(Kp[1]), x.first.z + total(Kp[2]),
                              x.first.w + total(Kp[3])};
     // Nodes are symmetric: the first angle and the last are the whole turn.
@@ -222,7 +223,17 @@ struct LawsonStep {
     return {a[0], a[1], a[2]};
   }
   /// The sum by halves.
-  static POLHODE_INLINE double total(double const* slopes) { return sum_of(L::load(slopes)); }
+  static POLHODE_INLINE double total(double const* k) {
+    if constexpr (s == 8)
+      return ((k[0] + k[4]) + (k[2] + k[6])) + ((k[1] + k[5]) + (k[3] + k[7]));
+    else
+      return (k[0] + k[2]) + (k[1] + k[3]);
+  }
+  /// p (v, 0).
+  static POLHODE_INLINE Q turned_by(Q const& p, V const& v) {
+    return {(p.w * v.x + p.y * v.z) - p.z * v.y, (p.w * v.y + p.z * v.x) - p.x * v.z,
+            (p.w * v.z + p.x * v.y) - p.y * v.x, -((p.x * v.x + p.y * v.y) + p.z * v.z)};
+  }
   /// Lanes that are to be read one by one, in memory: g++ 12 would take them out of registers by shuffles, which takes
   /// longer.
   template <class Vector, class Rows>
@@ -246,25 +257,24 @@ struct LawsonStep {
     else
       return (term(0) + term(2)) + (term(1) + term(3));
   }
-  /// The last step's polynomial of omega at the stages of this one, and in its middle.
-  static POLHODE_INLINE void extrapolate(Table const& table, Memory const& memory, double ratio, V const& w0, V& w,
-                                         V& mean) {
-    L const z = ratio * L::load(table.c.data()), middle(0.5 * ratio);
-    auto const ahead = [&](std::size_t axis, L const& from, L& at_stages, L& at_middle) POLHODE_LAMBDA {
-      alignas(64) double power[s];
-      times(table.beyond, memory.slopes[axis].data()).store(power);
-      L sum(0.0), half(0.0);
-      unroll<s>([&](auto k) POLHODE_LAMBDA {
-        double const coefficient = power[s - 1 - k];
-        sum = (sum + coefficient) * z;
-        half = (half + coefficient) * middle;
-      });
+  /// omega at the stages by the last step's polynomial; and in the middle of the step by its last slope, for of the
+  /// frame's rate no more is asked, and it is waited for.
+  static POLHODE_INLINE void extrapolate(Table const& table, Memory const& memory, double ratio, BodyPoint const& x,
+                                         V& w, V& mean) {
+    L const z = ratio * L::load(table.c.data());
+    double const to_middle = ratio * table.half_of_last;
+    auto const ahead = [&](std::size_t axis, double from, L& at_stages, L& at_middle) POLHODE_LAMBDA {
+      auto const& slopes = memory.slopes[axis];
+      at_middle = L(from + to_middle * slopes[s - 1]);
+      alignas(64) double power[1][s];
+      times(table.beyond, slopes.data()).store(power[0]);
+      L sum = power[0][s - 1] * z;
+      unroll<s - 1>([&](auto k) POLHODE_LAMBDA { sum = (sum + power[0][s - 2 - k]) * z; });
       at_stages = from + sum;
-      at_middle = from + half;
     };
-    ahead(0, w0.x, w.x, mean.x);
-    ahead(1, w0.y, w.y, mean.y);
-    ahead(2, w0.z, w.z, mean.z);
+    ahead(0, x.second.x, w.x, mean.x);
+    ahead(1, x.second.y, w.y, mean.y);
+    ahead(2, x.second.z, w.z, mean.z);
   }
   /// The same from the slope at x alone, and the mean damping there: from one evaluation, a direction in each lane.
   template <class Field>
@@ -293,7 +303,7 @@ struct LawsonStep {
     for (std::size_t i = 0; i < n; ++i) {
       for (std::size_t j = 0; j < n; ++j) {
         left[i][j] = (i == j ? 1.0 : 0.0) + lambda_h * table.mu[j][i] * table.b[j];
-        right[i][j] = table.mu[j][i];
+        right[i][j] = table.mu[j][i] * table.b[j];
       }
       right[i][n] = 1;
     }
