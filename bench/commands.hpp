@@ -1,17 +1,41 @@
 #pragma once
 /// The verbs of the command line that need the harness: list, run, simulate, reference.
 #include <CLI/App.hpp>
+#include <filesystem>
+#include <functional>
+#include <string>
 
 #include "bench/provenance.hpp"
 #include "bench/run.hpp"
 #include "bench/vocabulary.hpp"
+#include "results/compare.hpp"
+#include "results/terminal.hpp"
 
 namespace polhode::bench {
 
+/// Draws rows (t first, units beside the names) into a file; throws if it cannot.
+using PlotTrajectory =
+    std::function<void(results::Series const& rows, std::string const& title, std::filesystem::path const& file)>;
+
+/// How a comparison may be written down.
+enum class ComparisonForm { terminal, markdown, html };
+using WriteComparison = std::function<std::string(results::Comparison const& comparison, ComparisonForm form,
+                                                  results::Outlet const& outlet)>;
+
+/// What the verbs leave to somebody who knows how things look: the harness does not know the report.
+struct Faces {
+  PlotTrajectory plot;
+  WriteComparison comparison;
+};
+
 /// Adds the verbs to `app`. A verb that ran writes its exit code; mistakes are thrown.
-void add_commands(CLI::App& app, int& code);
+void add_commands(CLI::App& app, int& code, Faces const& faces);
 /// The verb list: what there is.
 void add_list(CLI::App& app);
+/// The verb simulate: one cell.
+void add_simulate(CLI::App& app, int& code, PlotTrajectory const& plot);
+/// The verb compare: two sets of records.
+void add_compare(CLI::App& app, int& code, WriteComparison const& write);
 /// The verb check: expectations and golden columns.
 void add_check(CLI::App& app, int& code);
 /// The verbs export and merge: records in other files.

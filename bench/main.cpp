@@ -1,16 +1,22 @@
 /// The command line, and the one file that sees both the harness and the report.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
+#include <map>
 #include <new>
 #include <system_error>
 
 #include "bench/commands.hpp"
+#include "report/comparison.hpp"
 #include "report/report.hpp"
+#include "report/trajectory.hpp"
 #include "results/store.hpp"
+#include "results/terminal.hpp"
 
 namespace {
 
@@ -37,6 +43,24 @@ std::vector<std::string> verb_names(CLI::App const& app) {
   return names;
 }
 
+/// What a report consists of, for a person at a terminal.
+std::string written_files(std::filesystem::path const& folder) {
+  std::map<std::string, std::map<std::string, int>> counts;
+  for (char const* part : {"tables", "figures"}) {
+    for (auto const& entry : std::filesystem::directory_iterator(folder / part))
+      ++counts[part][entry.path().extension().string()];
+  }
+  auto const files = [&](char const* part) { return (folder / part).string(); };
+  auto const count = [&](char const* part, char const* kind) {
+    return fmt::format("{} *{}", counts[part][kind], kind);
+  };
+  return text_table({{"part"}, {"files", false, true}, {"where"}},
+                    {{"text", "report.md", folder.string()},
+                     {"tables", count("tables", ".csv") + ", " + count("tables", ".tex"), files("tables")},
+                     {"figures", count("figures", ".svg") + ", " + count("figures", ".pdf"), files("figures")}},
+                    results::outlet_of(STDOUT_FILENO));
+}
+
 void add_report(CLI::App& app) {
   static std::string folder, out;
   CLI::App* verb = app.add_subcommand("report", "Make tables, figures and a page from a result folder");
@@ -48,8 +72,21 @@ void add_report(CLI::App& app) {
     if (contents.metas.empty())
       throw results::StoreError(folder + ": holds no results; give a folder that `polhode run` wrote");
     report::write_report(contents, target);
+    if (::isatty(STDOUT_FILENO) != 0) fmt::print("{}", written_files(target));  // what scripts read is the line below
     fmt::print("{}\n", (target / "report.html").string());
   });
+}
+
+std::string comparison_in(results::Comparison const& comparison, bench::ComparisonForm form,
+                          results::Outlet const& outlet) {
+  switch (form) {
+    case bench::ComparisonForm::html:
+      return report::comparison_html(comparison);
+    case bench::ComparisonForm::markdown:
+      return report::comparison_markdown(comparison);
+    default:
+      return report::comparison_text(comparison, outlet);
+  }
 }
 
 /// What stands where nothing was expected: a flag, a verb or an argument.
@@ -106,7 +143,7 @@ int main(int argc, char** argv) {
       "Exit codes: 0 ok, 1 an expectation failed, 2 usage, 3 nothing selected, 4 a run failed, 5 a bad file, "
       "130 interrupted.");
   int code = exit_ok;
-  bench::add_commands(app, code);
+  bench::add_commands(app, code, {report::plot_trajectory, comparison_in});
   add_report(app);
   try {
     app.parse(argc, argv);

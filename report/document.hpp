@@ -56,6 +56,7 @@ struct Table {
   Text caption;
   std::vector<Column> columns;
   std::vector<std::vector<Entry>> rows;
+  bool has_file = true;  ///< tables/NAME.csv stands beside the document
 };
 
 struct Point {

@@ -81,8 +81,9 @@ std::string render(Table const& table) {
     }
     out += "</tr>\n";
   }
-  return out + fmt::format("</tbody></table></div>\n<figcaption>{}</figcaption>\n</figure>\n",
-                           made_by("tables/" + table.name + ".csv"));
+  out += "</tbody></table></div>\n";
+  if (table.has_file) out += fmt::format("<figcaption>{}</figcaption>\n", made_by("tables/" + table.name + ".csv"));
+  return out + "</figure>\n";
 }
 
 /// The picture without its XML prologue, and with ids that stay unique when many pictures share a page.

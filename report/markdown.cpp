@@ -60,6 +60,7 @@ std::string render(Table const& table) {
       if (!is_hidden(table, i)) out += fmt::format(" {} |", render_entry(row[i].text));
     }
   }
+  if (!table.has_file) return out + "\n\n";
   return out + fmt::format("\n\nFull precision: [tables/{0}.csv](tables/{0}.csv). Made by `polhode report DIR`.\n\n",
                            table.name);
 }

@@ -38,6 +38,7 @@ struct TextCell {
 
   TextCell(std::string shown, Tone meant) : text(std::move(shown)), tone(meant) {}
   TextCell(std::string shown) : text(std::move(shown)), tone(tone_of(text)) {}
+  TextCell(char const* shown) : TextCell(std::string(shown)) {}
 };
 
 /// One line for the titles and one for each row, columns two spaces apart. If it is too wide, the widest texts lose

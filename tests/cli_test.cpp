@@ -32,7 +32,8 @@ TEST(Cli, HelpOfEveryVerb) {
       {"run", {"SUITE", "--out DIR", "--filter", "--fresh", "--retry-failed", "--dry-run", "--timeout", "--threads"}},
       {"simulate",
        {"PROBLEM", "--variant", "--formulation", "--integrator", "--policy", "--h ", "--rtol", "--atol", "--t-end",
-        "--every", "--set NAME=VALUE", "--out FILE"}},
+        "--every", "--set NAME=VALUE", "--out FILE", "--plot FILE"}},
+      {"compare", {"A", "B", "--out FILE", "--html FILE", "--json FILE", "--format", "--fail-on-regression"}},
       {"reference", {"PROBLEM", "--variant", "--t-end", "--set NAME=VALUE", "--out DIR"}},
       {"report", {"DIR", "--out DIR"}}};
   for (auto const& [verb, words] : flags) {

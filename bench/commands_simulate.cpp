@@ -1,0 +1,139 @@
+/// The verb simulate: one cell, its trajectory as CSV, and its picture.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <memory>
+
+#include "bench/cell.hpp"
+#include "bench/cell_flags.hpp"
+#include "bench/commands.hpp"
+#include "results/store.hpp"
+
+namespace polhode::bench {
+namespace {
+
+std::string csv_of(PreparedCell const& prepared, Trajectory const& trajectory) {
+  results::Cell const& cell = prepared.cell;
+  std::string text = fmt::format(
+      "# polhode {} {}\n# problem {} {}\n# {} on {}, policy {}, {}\n", version(), build_id(), cell.problem,
+      cell.variant, cell.integrator, cell.formulation, cell.policy,
+      cell.h ? fmt::format("h = {:.17g} s", *cell.h) : fmt::format("rtol = {:g}, atol = {:g}", *cell.rtol, *cell.atol));
+  for (auto const& [name, values] : cell.set) text += fmt::format("# {} = {:.17g}\n", name, fmt::join(values, ","));
+  text += fmt::format("# steps {}, rejected {}, evaluations {}\n# status {}{}\n", trajectory.outcome.work.steps,
+                      trajectory.outcome.work.rejected, trajectory.outcome.evaluations,
+                      results::name_of(trajectory.status), trajectory.reason.empty() ? "" : ": " + trajectory.reason);
+  text += "# units: t [s]";
+  for (Column const& column : trajectory.columns)
+    if (!column.unit.empty()) text += fmt::format(", {} [{}]", column.name, column.unit);
+  text += "\nt";
+  for (Column const& column : trajectory.columns) text += "," + column.name;
+  text += '\n';
+  for (std::size_t i = 0; i < trajectory.history.times.size(); ++i)
+    text += fmt::format("{:.17g},{:.17g}\n", trajectory.history.times[i], fmt::join(trajectory.history.rows[i], ","));
+  return text;
+}
+
+void write_text(std::string const& file, std::string const& text) {
+  if (file.empty()) {
+    std::fwrite(text.data(), 1, text.size(), stdout);
+    return;
+  }
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  if (!out.flush()) throw results::StoreError(fmt::format("{}: cannot be written: {}", file, std::strerror(errno)));
+}
+
+/// Samples and output times may differ: only rows at multiples of `every` are wanted.
+void keep_outputs(Trajectory& trajectory, std::vector<Stop> const& stops) {
+  History kept;
+  for (std::size_t i = 0, k = 0; i < trajectory.history.times.size(); ++i) {
+    while (stops[k].time < trajectory.history.times[i]) ++k;
+    if (!stops[k].output) continue;
+    kept.times.push_back(trajectory.history.times[i]);
+    kept.rows.push_back(std::move(trajectory.history.rows[i]));
+  }
+  trajectory.history.times = std::move(kept.times);
+  trajectory.history.rows = std::move(kept.rows);
+}
+
+/// The rows as the report takes them.
+results::Series series_of(Trajectory const& trajectory) {
+  results::Series series{.cell = "", .name = "history", .columns = {"t"}, .units = {"s"}, .rows = {}};
+  for (Column const& column : trajectory.columns) {
+    series.columns.push_back(column.name);
+    series.units.push_back(column.unit);
+  }
+  for (std::size_t i = 0; i < trajectory.history.times.size(); ++i) {
+    std::vector<double>& row = series.rows.emplace_back(1, trajectory.history.times[i]);
+    row.insert(row.end(), trajectory.history.rows[i].begin(), trajectory.history.rows[i].end());
+  }
+  return series;
+}
+
+std::string title_of(results::Cell const& cell) {
+  return fmt::format("{}{}{}: {} on {}, {}", cell.problem, cell.variant.empty() ? "" : " ", cell.variant,
+                     cell.integrator, cell.formulation,
+                     cell.h ? fmt::format("h = {:g} s", *cell.h) : fmt::format("rtol = {:g}", *cell.rtol));
+}
+
+int run_simulation(CellFlags const& flags, double every, std::string const& out, std::string const& picture,
+                   PlotTrajectory const& plot) {
+  constexpr int run_failed = 4;
+  results::Cell cell = flags.chosen();
+  PreparedCell prepared = prepare(cell);
+  if (!(every > 0)) {
+    double const period = prepared.problem->sample_period();
+    every = period > 0 ? period : prepared.cell.t_end / 100;
+  }
+  constexpr double most_rows = 1e7;
+  if (prepared.cell.t_end / every > most_rows)
+    throw UsageError(
+        fmt::format("outputs every {:g} s until {:g} s are more than {:.0f} rows; give --every {:g} or more", every,
+                    prepared.cell.t_end, most_rows, prepared.cell.t_end / most_rows));
+  prepared = prepare(cell, every);
+  if (!prepared.refusal.empty())
+    throw UsageError(
+        fmt::format("{} on {}: {}", prepared.cell.integrator, prepared.cell.formulation, prepared.refusal));
+  warn(prepared.problem->warning());
+  Trajectory trajectory = simulate(prepared);
+  keep_outputs(trajectory, prepared.plan.stops);
+  write_text(out, csv_of(prepared, trajectory));
+  bool const failed = trajectory.status != results::Status::ok;
+  if (!picture.empty() && !(failed && trajectory.history.rows.size() < 2))
+    plot(series_of(trajectory), title_of(prepared.cell), picture);
+  if (!failed) return 0;
+  std::fputs(fmt::format("polhode: {} on {}: {}\n", prepared.cell.integrator, prepared.cell.problem, trajectory.reason)
+                 .c_str(),
+             stderr);
+  return run_failed;
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& app, int& code, PlotTrajectory const& plot) {
+  auto const flags = std::make_shared<CellFlags>();
+  auto const every = std::make_shared<double>(0);
+  auto const out = std::make_shared<std::string>();
+  auto const picture = std::make_shared<std::string>();
+  CLI::App* verb = app.add_subcommand("simulate", "Run one problem with one integrator; the trajectory as CSV");
+  flags->add_physics(*verb);
+  flags->add_method(*verb);
+  CLI::Option* has_every =
+      add_number(*verb, "--every", *every, "Output interval [s]; default the sample period, else t_end / 100");
+  verb->add_option("--out", *out, "File instead of standard output")->type_name("FILE");
+  verb->add_option("--plot", *picture, "Draw attitude, rates and the problem's own columns: FILE.svg or FILE.pdf")
+      ->type_name("FILE");
+  verb->callback([=, &code] {
+    if (has_every->count() > 0) check_positive("every", *every);
+    if (!picture->empty() && !picture->ends_with(".svg") && !picture->ends_with(".pdf"))
+      throw UsageError(fmt::format("--plot {}: write FILE.svg or FILE.pdf", quote(*picture)));
+    code = run_simulation(*flags, *every, *out, *picture, plot);
+  });
+}
+
+}  // namespace polhode::bench
