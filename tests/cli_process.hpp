@@ -110,6 +110,7 @@ class Process {
   Process& operator=(Process const&) = delete;
 
   void signal(int number) const { ::kill(pid_, number); }
+  pid_t pid() const { return pid_; }
 
   Result finish(std::chrono::seconds limit = std::chrono::seconds(60)) {
     auto const end = std::chrono::steady_clock::now() + limit;
