@@ -54,7 +54,7 @@ void add_sets(Document& document, Comparison const& comparison) {
       {{"set"}, {"folder"}, {"build"}, {"records", true}, {"of older builds", true}, {"unfinished", true}, {"made"}});
   for (auto const* side : {&comparison.a, &comparison.b}) {
     table.rows.push_back({side == &comparison.a ? "A" : "B", side->path, side->build, std::to_string(side->records),
-                          std::to_string(side->of_other_builds), std::to_string(side->unknown.size()), side->made});
+                          std::to_string(side->of_other_builds), std::to_string(side->unfinished.size()), side->made});
   }
   document.add(std::move(table));
   document.say(fmt::format("{} in both. {}", counted(comparison.common, "cell is", "cells are"),
@@ -160,7 +160,7 @@ void add_alone(Document& document, Comparison const& comparison, std::size_t mos
       "alone", fmt::format("{} in A alone, {} in B alone.", comparison.only_a.size(), comparison.only_b.size()),
       {{"run"}, {"in"}, {"cell"}});
   for (auto const& cell : comparison.only_a) {
-    bool const lost = std::ranges::find(comparison.b.unknown, cell.cell) != comparison.b.unknown.end();
+    bool const lost = std::ranges::find(comparison.b.unfinished, cell.cell) != comparison.b.unfinished.end();
     table.rows.push_back({cell.name, lost ? "A; began in B" : "A", cell.cell});
   }
   for (auto const& cell : comparison.only_b) table.rows.push_back({cell.name, "B", cell.cell});

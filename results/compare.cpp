@@ -72,7 +72,7 @@ Set set_of(Contents const& contents, std::string path) {
     set.by_cell[record.cell] = &record;
   }
   for (std::string const& cell : contents.unfinished) {
-    if (!set.by_cell.contains(cell)) set.side.unknown.push_back(cell);
+    if (!set.by_cell.contains(cell)) set.side.unfinished.push_back(cell);
   }
   set.side.records = set.records.size();
   return set;
@@ -239,7 +239,7 @@ Json json_of(Side const& side) {
           {"build", side.build},
           {"made", side.made},
           {"machine", side.machine},
-          {"unfinished", side.unknown},
+          {"unfinished", side.unfinished},
           {"records", side.records},
           {"records_of_other_builds", side.of_other_builds}};
 }
@@ -323,7 +323,7 @@ std::string_view name_of(Trend trend) {
 
 bool Comparison::regressed() const {
   bool const lost = std::ranges::any_of(
-      only_a, [&](NamedCell const& cell) { return std::ranges::find(b.unknown, cell.cell) != b.unknown.end(); });
+      only_a, [&](NamedCell const& cell) { return std::ranges::find(b.unfinished, cell.cell) != b.unfinished.end(); });
   return lost || any_worse(statuses) || any_worse(claims) || any_worse(columns);
 }
 

@@ -28,9 +28,9 @@ std::string_view name_of(Trend trend);
 
 /// One of the two sets: the records of the build that wrote last.
 struct Side {
-  std::string path, build, made;     ///< made: when, from which commit, as far as the meta tells
-  std::string machine;               ///< its fingerprint; empty if the metas tell none, or more than one
-  std::vector<std::string> unknown;  ///< cells that began and did not finish
+  std::string path, build, made;        ///< made: when, from which commit, as far as the meta tells
+  std::string machine;                  ///< its fingerprint; empty if the metas tell none, or more than one
+  std::vector<std::string> unfinished;  ///< cells that began and did not finish
   std::size_t records = 0;
   std::size_t of_other_builds = 0;  ///< records that were left out
 };
@@ -66,7 +66,7 @@ struct ColumnChange : NamedCell {
 struct TimeChange : NamedCell {
   std::string integrator;
   double a = 0, b = 0;                ///< medians [s]
-  double ratio = 1;                   ///< Hodges and Lehmann's b / a; of the medians if the samples are unknown
+  double ratio = 1;                   ///< Hodges and Lehmann's b / a; of the medians if the samples are unfinished
   double superiority = .5;            ///< the chance that a repetition of b takes longer than one of a
   std::optional<double> p, adjusted;  ///< null if a file holds no samples; adjusted by Holm over the cells
   Trend trend = Trend::same;

@@ -173,7 +173,7 @@ TEST(Compare, ACellThatBeganAndDidNotFinishIsARegression) {
   Contents b = set_of({record_of("rk4", 0.1)});
   b.unfinished.push_back(record_of("gauss1", 0.1).cell);
   Comparison const result = compare(set_of({record_of("rk4", 0.1), record_of("gauss1", 0.1)}), b, "A", "B");
-  EXPECT_THAT(result.b.unknown, ElementsAre(record_of("gauss1", 0.1).cell));
+  EXPECT_THAT(result.b.unfinished, ElementsAre(record_of("gauss1", 0.1).cell));
   EXPECT_TRUE(result.regressed());
 }
 

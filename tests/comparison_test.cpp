@@ -17,8 +17,8 @@ using testing::Not;
 
 Comparison sample() {
   Comparison c;
-  c.a = {.path = "old", .build = "a1", .made = "then", .machine = "m", .unknown = {}, .records = 3};
-  c.b = {.path = "new <b>", .build = "b1", .made = "now", .machine = "m", .unknown = {"x9"}, .records = 4};
+  c.a = {.path = "old", .build = "a1", .made = "then", .machine = "m", .unfinished = {}, .records = 3};
+  c.b = {.path = "new <b>", .build = "b1", .made = "now", .machine = "m", .unfinished = {"x9"}, .records = 4};
   c.common = 2;
   c.statuses.push_back({{"c1", "free_body//quaternion/rk4/none/h=0.1"},
                         results::Status::ok,
