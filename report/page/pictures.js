@@ -230,7 +230,8 @@ const RATES = ['wx', 'wy', 'wz'];
 const polhode = {
   id: 'x-polhodes', title: 'Polhodes on the inertia ellipsoid', space: true,
   about: 'Without torque the body rate stays on the ellipsoid of its energy and runs along a polhode: around the axis of the greatest or of the ' +
-    'least moment of inertia, never the middle one. From the integrals of motion; a controlled run leaves the ellipsoid.',
+    'least moment of inertia, never the middle one. From the integrals of motion; a controlled run leaves the ellipsoid. ' +
+    'Drag to turn, or use the arrow keys.',
   setup(panel) { Object.assign(panel, {body: panel.choice('Body'), run: panel.choice('With the rates of')}); },
   draw(panel, context) {
     const {records, units} = context;
@@ -253,7 +254,7 @@ const polhode = {
     }
     drawSpace(panel, lines, spin ? spin.semi_axes.map((a) => a * factor) : [1, 1, 1], ['x', 'y', 'z'].map((axis) => `ω${axis} [${unit}]`));
     panel.output.textContent = spin ? `Principal moments ${spin.inertia.map((j) => number(j)).join(', ')} kg m²; ω0 = ` +
-      `(${spin.omega0.map((w) => number(w * factor)).join(', ')}) ${unit}. Drag to turn, or use the arrow keys.` : '';
+      `(${spin.omega0.map((w) => number(w * factor)).join(', ')}) ${unit}.` : '';
     panel.csv = () => csvOf([['curve', 'n', ...['x', 'y', 'z'].map((axis) => `omega_${axis} [${unit}]`)],
       ...lines.flatMap((line, n) => line.points[0].map((_, i) => [line.name, n, ...line.points.map((p) => p[i])]))]);
     panel.again('');
@@ -270,7 +271,7 @@ function bodyAxis([a, b, c, s], k) {
 }
 const sphere = {
   id: 'x-sphere', title: 'Attitude on the sphere', space: true,
-  about: 'The track of a body axis among the stars, from a run\'s history; the dot is where it begins.',
+  about: 'The track of a body axis among the stars, from a run\'s history; the dot is where it begins. Drag to turn, or use the arrow keys.',
   setup(panel) {
     Object.assign(panel, {run: panel.choice('Run'), axis: panel.choice('Axis')});
     panel.axis.offer([['0', 'body x'], ['1', 'body y'], ['2', 'body z']]);
@@ -289,7 +290,7 @@ const sphere = {
     }
     drawSpace(panel, lines, [1, 1, 1], ['X', 'Y', 'Z']);
     panel.output.replaceChildren();
-    if (s) panel.readout(s.run, 'Drag to turn, or use the arrow keys.');
+    if (s) panel.readout(s.run, '');
     panel.csv = () => csvOf([['t [s]', 'X', 'Y', 'Z'], ...(s ? s.columns[0].values.map((t, i) => [t, ...lines[0].points.map((p) => p[i])]) : [])]);
     if (s) panel.again(filterOf(context.records, s.run));
   },

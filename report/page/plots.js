@@ -49,7 +49,7 @@ export function ticks(low, high) {
   const values = [], texts = [];
   if (high - low < 1.2) {
     for (let k = Math.floor(low); k <= Math.ceil(high); ++k) {
-      for (const m of [1, 2, 3, 5, 7]) values.push(m * 10 ** k), texts.push(`${m}·10<sup>${k}</sup>`);
+      for (const m of [1, 2, 5]) values.push(m * 10 ** k), texts.push(`${m}·10<sup>${k}</sup>`);
     }
     return {tickvals: values, ticktext: texts};
   }
@@ -215,7 +215,9 @@ export function hasWebGl() {
 }
 
 /** Where one looks from, and the plane that things are then projected on: for pictures without WebGL. */
-export function projected([x, y, z]) { return [0.7071 * (y - x), 0.877 * z - 0.34 * (x + y)]; }
+const EYE = [0.62, 0.62, 0.48];
+function projected([x, y, z]) { return [0.7071 * (y - x), 0.877 * z - 0.34 * (x + y)]; }
+function dot(a, b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
 /**
  * Lines in space on a translucent ellipsoid (semi-axes): {name, points: [xs, ys, zs], colour, width, faint}. Without
@@ -226,13 +228,14 @@ export function drawSpace(panel, lines, semiAxes, titles) {
   const most = Math.max(...semiAxes);
   panel.empty(lines.length === 0);
   if (!hasWebGl()) {
-    const flat = (points) => points[0].map((_, i) => projected([points[0][i], points[1][i], points[2][i]]));
-    const traces = lines.map((line) => {
-      const points = flat(line.points);
+    // What faces the eye, and faintly what the ellipsoid hides.
+    const traces = lines.flatMap((line) => [false, true].map((far) => {
+      const points = line.points[0].map((_, i) => [0, 1, 2].map((k) => line.points[k][i]))
+        .map((p) => ((dot(EYE, p.map((v, k) => v / semiAxes[k] ** 2)) < 0) === far ? projected(p) : [null, null]));
       return {type: 'scatter', mode: line.mode || 'lines', x: points.map((p) => p[0]), y: points.map((p) => p[1]),
-        name: plain(line.name), opacity: line.faint ? 0.5 : 1, hoverinfo: 'name', marker: {color: line.colour, size: 8},
+        name: plain(line.name), opacity: far ? 0.2 : 1, hoverinfo: 'name', marker: {color: line.colour, size: 8},
         line: {color: line.colour, width: line.width}};
-    });
+    }));
     const hidden = {visible: false, zeroline: false};
     drawn(plot, traces, themed({xaxis: hidden, yaxis: {...hidden, scaleanchor: 'x'}}));
     panel.note('This browser draws nothing in three dimensions (no WebGL): the picture is a projection.');

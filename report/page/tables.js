@@ -4,7 +4,7 @@ import {keyOf, lookOf} from './plots.js';
 import {filterOf, ofInstance} from './pictures.js';
 import {make} from './panel.js';
 
-function priceText(value, measure) { return measure === 'time' ? duration(value) : `${number(value, 6)} ev.`; }
+function priceText(value, measure) { return measure === 'time' ? duration(value) : `${number(value, 4)} ev.`; }
 function targetText(target) { return both(target, 'rad', true); }
 function offerMeasure(choice, records) {
   choice.offer([['time', 'CPU time'], ['evaluations', 'evaluations']], records.has('cpu_time_s') ? 'time' : 'evaluations');
