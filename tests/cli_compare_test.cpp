@@ -182,7 +182,7 @@ TEST(CliPlot, ThePictureStandsBesideTheCsv) {
 TEST(CliPlot, WithoutGnuplotTheCsvIsWrittenAllTheSame) {
   Folder const folder;
   Result const result =
-      polhode(folder, "simulate free_body --integrator rk4 --h 0.1 --t-end 5 --plot run.svg", {"PATH=/nowhere"});
+      polhode(folder, "simulate free_body --integrator rk4 --h 0.1 --t-end 10 --plot run.svg", {"PATH=/nowhere"});
   EXPECT_EQ(result.code, 5);
   EXPECT_EQ(result.err, "polhode: run.svg: not drawn: gnuplot is not on the PATH\n");
   EXPECT_THAT(result.out, HasSubstr("# status ok"));
