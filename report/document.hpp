@@ -77,7 +77,7 @@ struct Style {
 };
 
 struct Curve {
-  std::string label;
+  std::string label;  ///< in the legend; empty: none is needed
   Style style;
   std::vector<Point> points;
 };

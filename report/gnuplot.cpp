@@ -163,7 +163,8 @@ Legend legend_of(std::span<Panel const> panels, bool poster) {
   for (Panel const& panel : panels) {
     for (Curve const& curve : panel.curves) {
       any_grey = any_grey || has(panel, curve, 1);
-      if (!has(panel, curve, -1) || std::ranges::find(seen, curve.label) != seen.end()) continue;
+      bool const listed = curve.label.empty() || std::ranges::find(seen, curve.label) != seen.end();
+      if (!has(panel, curve, -1) || listed) continue;
       seen.push_back(curve.label);
       Style const& style = curve.style;
       if (!style.points) {

@@ -107,10 +107,10 @@ std::vector<std::string> bodies_of(Rows const& rows) {
 }
 
 void add_one_body(Figure& figure, Rows const& rows) {
-  Panel quaternion = panel("quaternion");
+  Panel quaternion = panel("q1 q2 q3 (x y z), q4 (scalar)");
   for (int i = 0; i < 4; ++i) {
-    std::string const name = fmt::format("q{}", i + 1);
-    quaternion.curves.push_back(curve(name, i, rows.column(name)));
+    std::string const label = i < 3 ? std::string(1, "xyz"[i]) : "scalar";
+    quaternion.curves.push_back(curve(label, i, rows.column(fmt::format("q{}", i + 1))));
   }
   figure.panels.push_back(std::move(quaternion));
 }
@@ -119,7 +119,7 @@ void add_angles(Figure& figure, Rows const& rows, std::vector<std::string> const
   Panel angle = panel("angle from the start [deg]");
   for (std::size_t i = 0; i < bodies.size(); ++i) {
     auto const q = rows.columns<4>(bodies[i], {"q1", "q2", "q3", "q4"});
-    std::string const label = bodies[i].empty() ? "angle" : bodies[i].substr(0, bodies[i].size() - 1);
+    std::string const label = bodies[i].empty() ? "" : bodies[i].substr(0, bodies[i].size() - 1);
     if (q) angle.curves.push_back(curve(label, static_cast<int>(i), angle_of(rows, *q)));
   }
   figure.panels.push_back(std::move(angle));
@@ -133,8 +133,8 @@ void add_rates(Figure& figure, Rows const& rows, std::vector<std::string> const&
     if (!w) continue;
     if (bodies.size() == 1) {
       for (int k = 0; k < 3; ++k) {
-        std::string const name = std::string("w") + "xyz"[k];
-        rates.curves.push_back(curve(name, k, rows.column(bodies[i] + name, degree)));
+        std::string const axis(1, "xyz"[k]);
+        rates.curves.push_back(curve(axis, k, rows.column(bodies[i] + "w" + axis, degree)));
       }
     } else {
       rates.curves.push_back(curve(
@@ -145,38 +145,52 @@ void add_rates(Figure& figure, Rows const& rows, std::vector<std::string> const&
   if (!rates.curves.empty()) figure.panels.push_back(std::move(rates));
 }
 
-/// Columns that are components of one thing: torque_x, torque_y; s1, s2; b1.v, b2.v.
-std::string stem_of(std::string name) {
-  if (name.size() > 2 && name[0] == 'b' && name.find('.') != std::string::npos) name.erase(0, name.find('.') + 1);
-  bool const component = name.size() > 2 && name[name.size() - 2] == '_' && name.back() >= 'x' && name.back() <= 'z';
-  if (component) return name.substr(0, name.size() - 2);
-  if (name == "x" || name == "y" || name == "z") return "position";
-  if (name == "vx" || name == "vy" || name == "vz") return "velocity";
-  while (name.size() > 1 && name.back() >= '0' && name.back() <= '9') name.pop_back();
-  return name;
+/// The name of a body's column without its body.
+std::string_view own_name(std::string_view name) {
+  auto const dot = name.find('.');
+  return name.starts_with('b') && dot != std::string_view::npos ? name.substr(dot + 1) : name;
 }
 
-bool is_shown_above(std::string name) {
-  if (name.size() > 2 && name[0] == 'b' && name.find('.') != std::string::npos) name.erase(0, name.find('.') + 1);
+/// What a column is a component of, and which: torque_x is the x of torque, s1 the s1 of s.
+struct Component {
+  std::string of, which;
+};
+
+Component component_of(std::string_view full) {
+  std::string const name(own_name(full));
+  if (name != full) return {name, std::string(full)};  // of one body among several
+  bool const axis = name.back() >= 'x' && name.back() <= 'z';
+  if (axis && name.size() == 1) return {"position", name};
+  if (axis && name.size() == 2 && name[0] == 'v') return {"velocity", name.substr(1)};
+  if (axis && name.size() > 2 && name[name.size() - 2] == '_')
+    return {name.substr(0, name.size() - 2), name.substr(name.size() - 1)};
+  auto const digits = name.find_last_not_of("0123456789");
+  return {digits == std::string::npos ? name : name.substr(0, digits + 1), std::string(full)};
+}
+
+bool is_shown_above(std::string_view name) {
   static constexpr std::array<std::string_view, 7> shown{"q1", "q2", "q3", "q4", "wx", "wy", "wz"};
-  return name == "t" || std::ranges::find(shown, name) != shown.end();
+  return name == "t" || std::ranges::find(shown, own_name(name)) != shown.end();
 }
 
 void add_others(Figure& figure, Rows const& rows) {
   std::vector<std::pair<std::string, Panel>> panels;
   for (std::string const& name : rows.names()) {
     if (is_shown_above(name)) continue;
-    std::string const stem = stem_of(name), unit = rows.unit(name);
-    auto found = std::ranges::find(panels, stem, &std::pair<std::string, Panel>::first);
+    auto const [of, which] = component_of(name);
+    auto found = std::ranges::find(panels, of, &std::pair<std::string, Panel>::first);
     if (found == panels.end()) {
-      panels.emplace_back(stem, panel(unit.empty() ? stem : fmt::format("{} [{}]", stem, unit)));
+      std::string const unit = rows.unit(name);
+      panels.emplace_back(of, panel(unit.empty() ? of : fmt::format("{} [{}]", of, unit)));
       found = panels.end() - 1;
     }
-    auto const count = static_cast<int>(found->second.curves.size());
-    if (found->second.curves.size() < 2 * most_bodies)
-      found->second.curves.push_back(curve(name, count, rows.column(name)));
+    std::vector<Curve>& curves = found->second.curves;
+    if (curves.size() < most_bodies) curves.push_back(curve(which, static_cast<int>(curves.size()), rows.column(name)));
   }
-  for (auto& [stem, own] : panels) figure.panels.push_back(std::move(own));
+  for (auto& [of, own] : panels) {
+    if (own.curves.size() == 1) own.curves.front().label.clear();  // the axis says it
+    figure.panels.push_back(std::move(own));
+  }
 }
 
 /// A folder that goes with the object.

@@ -46,9 +46,11 @@ std::vector<std::string> labels_of(Figure const& figure) {
 
 TEST(TrajectoryFigure, PanelsFollowFromTheColumns) {
   Figure const figure = trajectory_figure(turn(), "title");
-  EXPECT_THAT(labels_of(figure), ElementsAre("quaternion", "angle from the start [deg]", "body rate [deg/s]",
-                                             "alpha [rad]", "torque [N m]"));
-  EXPECT_EQ(figure.panels[4].curves.size(), 3u);
+  EXPECT_THAT(labels_of(figure), ElementsAre("q1 q2 q3 (x y z), q4 (scalar)", "angle from the start [deg]",
+                                             "body rate [deg/s]", "alpha [rad]", "torque [N m]"));
+  ASSERT_EQ(figure.panels[4].curves.size(), 3u);
+  EXPECT_EQ(figure.panels[4].curves[1].label, "y") << "as the rate about that axis: one entry of the legend";
+  EXPECT_EQ(figure.panels[3].curves.at(0).label, "") << "the axis says it";
   EXPECT_EQ(figure.panels[0].title, "title");
 }
 
