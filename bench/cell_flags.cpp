@@ -72,7 +72,7 @@ void CellFlags::add_method(CLI::App& verb) {
   verb.add_option("--formulation", cell.formulation, "Attitude description; see `polhode list problems`")
       ->default_str("quaternion");
   verb.add_option("--integrator", cell.integrator, "Integrator; see `polhode list integrators`")->required();
-  verb.add_option("--policy", cell.policy, "Norm policy: none, project")->default_str("none");
+  verb.add_option("--policy", cell.policy, "Norm policy; polhode list policies")->default_str("none");
   has_h = add_number(verb, "--h", h, "Step size [s]; divides the sample period");
   has_rtol = add_number(verb, "--rtol", rtol, "Relative tolerance, instead of --h");
   has_atol = add_number(verb, "--atol", atol, "Absolute tolerance; default rtol / 100");
