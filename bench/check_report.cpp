@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 
 namespace polhode::bench {
 namespace {
@@ -17,6 +18,15 @@ constexpr std::size_t most_failures_shown = 20;
 Line cells_of(Row const& row) {
   std::string const worst = row.worst.empty() ? "-" : fmt::format("{} in {}", row.worst, row.worst_cell);
   return {std::to_string(row.line), row.selector, row.field, row.bound, worst, std::string(name_of(row.verdict))};
+}
+
+/// A number with 4 digits where a window's width is limited; what fails is told in full below the table.
+std::string in_table(std::string const& value, results::Outlet const& outlet) {
+  if (value.empty()) return "-";
+  double number = 0;
+  auto const [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
+  bool const is_number = error == std::errc() && end == value.data() + value.size();
+  return outlet.width > 0 && is_number ? fmt::format("{:.4g}", number) : value;
 }
 
 results::Tone tone_of(Row const& row) {
@@ -115,16 +125,16 @@ std::string markdown(std::string_view text) {
 }  // namespace
 
 std::string table_text(CheckSubject const& subject, std::vector<Row> const& rows, results::Outlet const& outlet) {
-  std::vector<results::TextColumn> heads;
-  for (char const* title : columns) heads.push_back({title});
-  heads.front().number = true;
-  heads.back().keep = true;
+  // A value that lost its exponent would lie: it has a column of its own, and runs may be shortened.
+  std::vector<results::TextColumn> const heads{
+      {"line", true}, {"selector"}, {"field"}, {"bound"}, {"worst value", true}, {"of run"}, {"verdict", false, true}};
   std::vector<std::vector<results::TextCell>> lines;
   for (Row const& row : rows) {
-    Line const cells = cells_of(row);
     lines.emplace_back();
-    for (std::string const& cell : cells) lines.back().emplace_back(cell, results::Tone::plain);
-    lines.back().back().tone = tone_of(row);
+    for (std::string const& cell :
+         {std::to_string(row.line), row.selector, row.field, row.bound, in_table(row.worst, outlet), row.worst_cell})
+      lines.back().emplace_back(cell, results::Tone::plain);
+    lines.back().emplace_back(std::string(name_of(row.verdict)), tone_of(row));
   }
   std::string text = subject_text(subject) + "\n\n" + results::text_table(heads, lines, outlet) + "\n";
   for (Row const& row : rows) {

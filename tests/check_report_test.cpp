@@ -41,7 +41,7 @@ std::vector<Row> rows_of_all_kinds() {
 TEST(CheckReport, TheTableIsAlignedAndEndsWithTheFailures) {
   std::string const text = table_text(subject, rows_of_all_kinds(), {});
   EXPECT_THAT(text, HasSubstr("7 of 8 cells have records of build b1 (2024-01-01T00:00:00Z)"));
-  EXPECT_THAT(text, HasSubstr("   9  {h = 0.1, tag = <a|b>}  norm_drift  <= 1e-9  1 in a//b    passed\n"));
+  EXPECT_THAT(text, HasSubstr("   9  {h = 0.1, tag = <a|b>}  norm_drift  <= 1e-9            1  a//b    passed\n"));
   EXPECT_THAT(text, HasSubstr("suite.toml:9: second\n"));
   EXPECT_THAT(text, HasSubstr("5 checks: 1 passed, 3 failed, 1 expected to fail\n"));
   EXPECT_THAT(text, Not(HasSubstr("\033")));
