@@ -22,7 +22,7 @@ std::string table_text(CheckSubject const& subject, std::vector<Row> const& rows
 /// One testsuite, one testcase for each row. Text that XML cannot hold is replaced.
 std::string junit_text(CheckSubject const& subject, std::vector<Row> const& rows);
 std::string markdown_text(CheckSubject const& subject, std::vector<Row> const& rows);
-/// Failures as GitHub's workflow commands, `::error file=...,line=...::...`, one line each; at most 10, for GitHub
+/// Failures as workflow commands of GitHub ("::error file=...,line=...::..."), one line each; at most 10, for GitHub
 /// shows no more of a step.
 std::string github_text(CheckSubject const& subject, std::vector<Row> const& rows);
 

@@ -1,5 +1,5 @@
 #pragma once
-/// Tables as LaTeX with the booktabs package, to be \input into a paper. A file says in its first lines what it needs.
+/// Tables as LaTeX with the booktabs package, for a paper to input. A file says in its first lines what it needs.
 #include <string>
 #include <string_view>
 

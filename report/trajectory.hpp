@@ -8,12 +8,12 @@
 
 namespace polhode::report {
 
-/// Panels from the columns' names and units, whatever the problem: `t` first, then q1 q2 q3 q4 (scalar last), wx wy wz
-/// [rad/s] and others; of several bodies (`b1.` ...) the angles and rates of the first eight. Angles are from the first
-/// row's attitude. Long runs are thinned to some 2000 rows.
+/// Panels from names and units of the columns, whatever the problem: t first, then q1 q2 q3 q4 (scalar last), wx wy wz
+/// [rad/s] and others; of several bodies (b1. ...) the angles and rates of the first eight. Angles are from the
+/// attitude of the first row. Long runs are thinned to some 2000 rows.
 Figure trajectory_figure(results::Series const& rows, std::string const& title);
 
-/// Draws it into `file`, *.svg or *.pdf. Throws ReportError: gnuplot is missing or fails, or the file cannot be
+/// Draws it into `file`, an .svg or .pdf. Throws ReportError: gnuplot is missing or fails, or the file cannot be
 /// written.
 void plot_trajectory(results::Series const& rows, std::string const& title, std::filesystem::path const& file);
 
