@@ -73,24 +73,6 @@ std::optional<Price> between(Record const& run, Record const& coarser, double ta
   return Price{mean(fine->value, coarse->value), mean(fine->low, coarse->low), mean(fine->high, coarse->high)};
 }
 
-std::optional<Cost> cheapest(Sweep const& sweep, double target, Measure measure) {
-  std::optional<Cost> best;
-  for (std::size_t i = 0; i < sweep.runs.size(); ++i) {
-    Record const& run = *sweep.runs[i];
-    auto const price = price_of(run, measure);
-    if (!price || !reaches(run, target) || (best && best->measured <= price->value)) continue;
-    best = Cost{price->value, price->low, price->high, &run, price->value, false};
-    auto const exact_price = i > 0 ? between(run, *sweep.runs[i - 1], target, measure) : std::nullopt;
-    if (exact_price) {
-      best->value = exact_price->value;
-      best->low = exact_price->low;
-      best->high = exact_price->high;
-      best->interpolated = true;
-    }
-  }
-  return best;
-}
-
 /// Place of an instance in every list; what is set or aside comes after what is asked.
 std::size_t rank_of(Cell const& c) {
   std::size_t rank = 0;
@@ -180,6 +162,24 @@ bool Instance::comparable() const {
 bool is_aside(Cell const& cell) {
   constexpr std::string_view words[] = {"coupled", "as_printed", "unlocated"};
   return std::ranges::any_of(words, [&](auto word) { return has_word(cell.variant, word); });
+}
+
+std::optional<Cost> cheapest(Sweep const& sweep, double target, Measure measure) {
+  std::optional<Cost> best;
+  for (std::size_t i = 0; i < sweep.runs.size(); ++i) {
+    Record const& run = *sweep.runs[i];
+    auto const price = price_of(run, measure);
+    if (!price || !reaches(run, target) || (best && best->measured <= price->value)) continue;
+    best = Cost{price->value, price->low, price->high, &run, price->value, false};
+    auto const exact_price = i > 0 ? between(run, *sweep.runs[i - 1], target, measure) : std::nullopt;
+    if (exact_price) {
+      best->value = exact_price->value;
+      best->low = exact_price->low;
+      best->high = exact_price->high;
+      best->interpolated = true;
+    }
+  }
+  return best;
 }
 
 std::vector<Cost> ranking(Instance const& instance, double target, Measure measure) {

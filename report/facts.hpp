@@ -66,6 +66,9 @@ struct Cost {
   bool interpolated = false;             ///< `value` is at the target itself, between `run` and its neighbour
 };
 
+/// The cheapest run of one sweep that reaches an attitude error of `target` [rad], and what the target itself costs;
+/// none if no run reaches it with its cost known.
+std::optional<Cost> cheapest(Sweep const& sweep, double target, Measure measure);
 /// Cheapest way of each integrator to an attitude error of `target` [rad], cheapest first.
 std::vector<Cost> ranking(Instance const& instance, double target, Measure measure);
 /// Time if some run of the instance was timed, otherwise evaluations.
