@@ -1,7 +1,4 @@
-/// The metrics of runs that can be computed by hand: a ball that turns about z at a constant rate, with errors and
-/// drifts of known size put in.
-#include "bench/measure.hpp"
-
+/// The metrics of runs that can be computed by hand.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,78 +7,13 @@
 
 #include "tests/random_numbers.hpp"
 #include "tests/runs.hpp"
+#include "tests/turning_ball.hpp"
 
 namespace polhode::bench {
 namespace {
 
 using polhode::test::a_cell;
-
-constexpr double rate = 0.2;    // [rad/s]
-constexpr double t_end = 50;    // [s]
-constexpr double small = 1e-5;  // an error to be found [rad]
-constexpr int steps = 2000;
-Vec3<Quad> const omega{0, 0, rate};
-
-ChosenProblem const& turning_ball() {
-  static auto const problem =
-      problem_named("free_body")
-          .choose({.words = {}, .set = {{"inertia", {1, 1, 1}}, {"q0", {0, 0, 0, 1}}, {"omega0", {0, 0, rate}}}});
-  return *problem;
-}
-UsableReference const& its_reference() {
-  static UsableReference const reference{
-      .id = "turning ball",
-      .bar = 0,
-      .reference = Reference::solve(turning_ball(), {.t_end = t_end, .sample_period = 0, .jumps = {}})};
-  return reference;
-}
-Metrics metrics_of_the_ball(bool torque_free = true) {
-  return {&its_reference(), torque_free ? turning_ball().body() : nullptr, t_end};
-}
-
-/// Its attitude: half the angle in the quaternion.
-Quat<Quad> exact(double t) {
-  Quad const half = Quad(rate) * t / 2;
-  return {0, 0, sin(half), cos(half)};
-}
-/// That attitude, turned by `angle` [rad] about the body's x axis, across the rotation.
-Quat<Quad> turned(double t, double angle) {
-  return exact(t) * Quat<Quad>{sin(Quad(angle) / 2), 0, 0, cos(Quad(angle) / 2)};
-}
-
-/// What a run shows in this state; the drift is told as the harness tells it.
-struct Seen {
-  double t;
-  BodySight body;
-  double raw_defect = 0;
-  operator Sight() const { return {.t = t, .bodies = std::span(&body, 1), .raw_defect = raw_defect}; }
-};
-Seen sight(double t, Quat<Quad> const& q, Vec3<Quad> const& w = omega) {
-  return {.t = t, .body = {{.q = q, .omega = w}, double(dot(q, q) - 1)}};
-}
-Seen drifting(double t, double drift) {
-  Seen seen = sight(t, exact(t));
-  seen.body.drift = drift;
-  return seen;
-}
-
-double evenly(double part) {
-  return t_end * part;
-}
-/// As an adaptive run steps: short steps first.
-double ever_longer(double part) {
-  return t_end * part * part * part;
-}
-
-/// The record of a run; sight_at(t) says what it shows at time t.
-template <class SightAt>
-results::Record record_of(SightAt sight_at, double (*time)(double) = evenly, bool torque_free = true) {
-  Metrics metrics = metrics_of_the_ball(torque_free);
-  for (int k = 0; k <= steps; ++k) metrics.see(sight_at(time(double(k) / steps)));
-  results::Record record;
-  metrics.fill(record);
-  return record;
-}
+using namespace test;
 
 // ---- Norm drift ----------------------------------------------------------------------------------------------------
 
@@ -193,73 +125,6 @@ TEST(RateError, IsRelativeToTheLargestRate) {
   EXPECT_NEAR(*record.rate_error_max, 3e-6 / rate, 1e-18);
   EXPECT_NEAR(*record.rate_error_end, 1e-6 / rate, 1e-18);
   EXPECT_LT(*record.attitude_error_max, 1e-30) << "the attitude is right";
-}
-
-// ---- Invariants ----------------------------------------------------------------------------------------------------
-
-TEST(Invariants, AFasterBodyHasMoreEnergyAndMomentumInTheSameDirection) {
-  double const more = 1e-6;
-  auto const record =
-      record_of([&](double t) { return sight(t, exact(t), scaled(Quad(1 + (t == t_end / 2 ? more : 0)), omega)); });
-  EXPECT_NEAR(*record.energy_drift_max, 2 * more + more * more, 1e-15) << "it is quadratic in the rate";
-  EXPECT_NEAR(*record.momentum_drift_max, more, 1e-15);
-  EXPECT_LT(*record.momentum_direction_max, 1e-32);
-}
-
-TEST(Invariants, ATurnedBodyTurnsTheMomentumAlone) {
-  auto const record = record_of([](double t) { return sight(t, turned(t, t == t_end / 2 ? small : 0)); });
-  EXPECT_NEAR(*record.momentum_direction_max / small, 1, 1e-13);
-  EXPECT_LT(*record.energy_drift_max, 1e-32);
-  EXPECT_LT(*record.momentum_drift_max, 1e-32);
-}
-
-TEST(Invariants, AgainstTimeKeepTheirSigns) {
-  double const less = -1e-6;
-  Metrics metrics = metrics_of_the_ball();
-  for (int k = 0; k <= steps; ++k) {
-    double const t = t_end * k / steps;
-    bool const late = t > t_end / 2;
-    metrics.see(sight(t, late ? turned(t, small) : exact(t), scaled(Quad(late ? 1 + less : 1), omega)));
-  }
-  auto const series = metrics.invariant_series("a cell");
-  EXPECT_EQ(series.name, "invariants");
-  EXPECT_EQ(series.columns, (std::vector<std::string>{"t", "energy", "momentum", "momentum_direction"}));
-  ASSERT_GE(series.rows.size(), std::min<std::size_t>(steps, 500));
-  ASSERT_LE(series.rows.size(), 502u);
-  EXPECT_EQ(series.rows.front(), (std::vector<double>{0, 0, 0, 0}));
-  auto const& end = series.rows.back();
-  EXPECT_EQ(end[0], t_end);
-  EXPECT_NEAR(end[1], 2 * less + less * less, 1e-15);
-  EXPECT_NEAR(end[2], less, 1e-15);
-  EXPECT_NEAR(end[3] / small, 1, 1e-13);
-}
-
-TEST(Invariants, AnUnnormalisedQuaternionDoesNotChangeThem) {
-  Quat<Quad> const tilt = turned(0, 1);  // so that the momentum is along no axis
-  auto const record = record_of([&](double t) { return sight(t, scaled(Quad(1 + 0.01 * t), tilt * exact(t))); });
-  EXPECT_GT(*record.norm_drift_max, 1);
-  EXPECT_LT(*record.momentum_direction_max, 1e-30);
-}
-
-TEST(Invariants, UseTheWholeInertiaMatrix) {
-  // J omega = (xy, yy, yz) of the matrix for a unit rate about y.
-  BodyParameters body;
-  body.inertia = {3, 4, 5, 0.1, 0.2, 0.3};
-  auto const found = invariants_of(body.matrix<Quad>(), exact(0), Vec3<Quad>{0, 1, 0});
-  EXPECT_NEAR(double(found.energy), 2, 1e-15);
-  EXPECT_NEAR(double(found.momentum), std::sqrt(0.01 + 16 + 0.09), 1e-15);
-  EXPECT_NEAR(double(found.direction.x), 0.1, 1e-16);
-  EXPECT_NEAR(double(found.direction.z), 0.3, 1e-16);
-}
-
-TEST(Invariants, OfAControlledBodyAreNull) {
-  bool const controlled = !problem_named("pd_slew").choose({})->torque_free();
-  EXPECT_TRUE(controlled);
-  auto const record = record_of([](double t) { return sight(t, exact(t)); }, evenly, !controlled);
-  EXPECT_FALSE(record.energy_drift_max);
-  EXPECT_FALSE(record.momentum_drift_max);
-  EXPECT_FALSE(record.momentum_direction_max);
-  EXPECT_TRUE(record.attitude_error_max);
 }
 
 // ---- Growth exponent -----------------------------------------------------------------------------------------------
