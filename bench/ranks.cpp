@@ -1,40 +1,126 @@
 #include "bench/ranks.hpp"
 
+#include <cstdlib>
+#include <initializer_list>
+#include <map>
+#include <optional>
 #include <utility>
 
+#include "bench/notes.hpp"
+#include "bench/vocabulary.hpp"
+
 namespace polhode::bench {
+namespace {
+
+std::optional<int> number_in_environment(char const* name) {
+  char const* text = std::getenv(name);
+  return text && *text ? std::optional(std::atoi(text)) : std::nullopt;
+}
+std::optional<int> first_of(std::initializer_list<char const*> names) {
+  for (char const* name : names)
+    if (auto const number = number_in_environment(name)) return number;
+  return {};
+}
+
+/// What mpirun of Open MPI and of MPICH, and srun with a PMI, tell the processes they start.
+std::optional<int> rank_by_launcher() {
+  return first_of({"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"});
+}
+int size_by_launcher() {
+  return first_of({"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_NTASKS"}).value_or(1);
+}
+
+}  // namespace
 
 Ranks Ranks::of_this_job() {
-  return Ranks(nullptr);
+  if (!rank_by_launcher()) return Ranks(nullptr);
+  auto channel = mpi_channel();
+  if (!channel && size_by_launcher() > 1) {
+    if (!speaks_for_the_job()) throw EndedElsewhere();
+    throw UsageError(
+        "several ranks, but this polhode was built without MPI: build with -DPOLHODE_MPI=ON, or use `run --shard K/N`");
+  }
+  return Ranks(std::move(channel));
+}
+
+bool speaks_for_the_job() {
+  return rank_by_launcher().value_or(0) == 0;
 }
 
 Ranks::Ranks(std::unique_ptr<Channel> channel) : channel_(std::move(channel)), unwinding_(std::uncaught_exceptions()) {}
 
 Ranks::~Ranks() {
-  bool const known_to_all = std::uncaught_exceptions() == unwinding_ || ended_together_;
+  bool const known_to_all = std::uncaught_exceptions() == unwinding_ || ended_together_ || alone();
   if (channel_ && known_to_all) channel_->leave();
 }
 
 void Ranks::together(std::function<void()> const& step) {
-  step();
+  if (alone()) return step();
+  std::exception_ptr failure;
+  try {
+    step();
+  } catch (...) {
+    failure = std::current_exception();
+  }
+  if (!manager()) {
+    send(*channel_, 0, failure ? note_of(failure) : Note{Word::arrived});
+    word_of_manager();
+    return;
+  }
+  // Of several failures the one of the lowest rank is told: the manager's own, where all have it.
+  std::map<int, std::exception_ptr> failures;
+  for (int heard = 1; heard < size(); ++heard) {
+    Heard const worker = await(*channel_);
+    if (worker.note.word == Word::failed) failures.emplace(worker.from, failure_of(worker));
+  }
+  if (!failure && !failures.empty()) failure = failures.begin()->second;
+  end_for_all(failure);
 }
 
 std::string Ranks::from_manager(std::function<std::string()> const& make) {
-  return make();
+  if (alone()) return make();
+  if (!manager()) return word_of_manager();
+  std::string bytes;
+  try {
+    bytes = make();
+  } catch (...) {
+    end_for_all(std::current_exception());
+  }
+  send_all(*channel_, {Word::bytes, 0, bytes});
+  return bytes;
 }
 
-void Ranks::distribute(std::int64_t count, std::function<std::string(std::int64_t)> const& work,
-                       std::function<void(std::int64_t, std::string)> const& deliver, std::atomic<bool>* stop) {
-  for (std::int64_t k = 0; k < count; ++k) {
-    if (stop && *stop) return;
-    std::string result = work(k);
-    if (stop && *stop) return;
-    deliver(k, std::move(result));
+void Ranks::distribute(std::int64_t count, Work const& work, Deliver const& deliver, std::atomic<bool>* stop) {
+  std::atomic<bool> nobody_asks = false;
+  std::atomic<bool>& stopping = stop ? *stop : nobody_asks;
+  if (alone()) {
+    for (std::int64_t k = 0; k < count && !stopping; ++k) {
+      std::string bytes = work(k);
+      if (!stopping) deliver(k, std::move(bytes));
+    }
+  } else if (manager()) {
+    end_for_all(deal_out(*channel_, count, work, deliver, stopping));
+  } else if (!serve(*channel_, work, stopping)) {
+    leave_quietly();
   }
 }
 
-bool speaks_for_the_job() {
-  return true;
+std::string Ranks::word_of_manager() {
+  Heard const heard = await(*channel_);
+  if (heard.note.word == Word::failed) leave_quietly();
+  return heard.note.text;
+}
+
+void Ranks::leave_quietly() {
+  ended_together_ = true;
+  throw EndedElsewhere();
+}
+
+void Ranks::end_for_all(std::exception_ptr const& failure) {
+  send_all(*channel_, failure ? note_of(failure) : Note{Word::go});
+  if (!failure) return;
+  ended_together_ = true;
+  std::rethrow_exception(failure);
 }
 
 }  // namespace polhode::bench

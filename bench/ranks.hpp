@@ -9,6 +9,7 @@
 #include <string>
 
 #include "bench/channel.hpp"
+#include "bench/dealer.hpp"
 
 namespace polhode::bench {
 
@@ -52,10 +53,15 @@ class Ranks {
   /// With several ranks `work` runs in a thread of its own, one at a time, while the manager delivers in the caller's.
   /// Once `stop` is set, on any rank, it is set on all: nothing more is dealt, and what work returns from then on is
   /// not delivered. It is also set when a rank fails. Work that takes long should look at it.
-  void distribute(std::int64_t count, std::function<std::string(std::int64_t)> const& work,
-                  std::function<void(std::int64_t, std::string)> const& deliver, std::atomic<bool>* stop = nullptr);
+  void distribute(std::int64_t count, Work const& work, Deliver const& deliver, std::atomic<bool>* stop = nullptr);
 
  private:
+  /// On the manager: everybody may go on, or has to end.
+  void end_for_all(std::exception_ptr const& failure);
+  /// On a worker: what the manager says, once it says that all may go on.
+  std::string word_of_manager();
+  [[noreturn]] void leave_quietly();
+
   std::unique_ptr<Channel> channel_;
   int unwinding_;                ///< exceptions in flight at the start
   bool ended_together_ = false;  ///< an exception is known to all
