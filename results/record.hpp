@@ -184,6 +184,8 @@ struct Begin {
 /// The keys stand in the order of the schema; what is empty or not finite is null.
 nlohmann::ordered_json to_json(Record const& record);
 nlohmann::ordered_json to_json(Begin const& begin);
+/// As `cpu_time_s` of a record.
+nlohmann::ordered_json to_json(CpuTime const& time);
 /// Throws std::invalid_argument unless every column has a unit and every row a number per column.
 nlohmann::ordered_json to_json(Series const& series);
 /// Throws std::invalid_argument for the keys "schema" and "kind", which are the record's own.
@@ -195,6 +197,8 @@ std::string kind_of(nlohmann::ordered_json const& json);
 /// right. A null reads as an empty optional, or as NaN where a number must stand.
 Record record_from_json(nlohmann::ordered_json const& json);
 Begin begin_from_json(nlohmann::ordered_json const& json);
+/// `where` names the time in what is thrown.
+CpuTime cpu_time_from_json(nlohmann::ordered_json const& json, std::string const& where);
 Series series_from_json(nlohmann::ordered_json const& json);
 Meta meta_from_json(nlohmann::ordered_json const& json);
 

@@ -283,6 +283,10 @@ Json to_json(Begin const& begin) {
   return json;
 }
 
+Json to_json(CpuTime const& time) {
+  return encode(time);
+}
+
 Json to_json(Series const& series) {
   check_shape(series);
   Json json = start("series");
@@ -337,6 +341,12 @@ Begin begin_from_json(Json const& json) {
   decode(members.take("build"), "build", begin.build);
   members.nothing_left();
   return begin;
+}
+
+CpuTime cpu_time_from_json(Json const& json, std::string const& where) {
+  CpuTime time;
+  decode(json, where, time);
+  return time;
 }
 
 Series series_from_json(Json const& json) {

@@ -213,7 +213,13 @@ Contents read(fs::path const& path) {
   }
   Contents contents = collector.finish();
   contents.catalogue = read_catalogue(path);
+  contents.benchmarks = read_benchmarks(path);
   return contents;
+}
+
+bool is_own_name(std::string_view name) {
+  bool const hidden = name.starts_with('.');
+  return hidden || name == "suite.toml" || name.starts_with(catalogue_file) || name.ends_with(".jsonl");
 }
 
 Writer::Writer(fs::path const& file, Meta const& meta) : file_(file) {

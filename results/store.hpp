@@ -11,8 +11,10 @@
 #include <memory>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "results/benchmarks.hpp"
 #include "results/catalogue.hpp"
 #include "results/record.hpp"
 
@@ -31,11 +33,15 @@ struct Contents {
   std::vector<std::string> unfinished;  ///< cells with a begin and no run of the same build after it
   std::size_t repeated = 0;             ///< runs that a later run of the same cell and build replaced
   Catalogue catalogue;                  ///< of the integrators; empty if the folder has none, or for one file
+  Benchmarks benchmarks;                ///< of polhode-bench; the same
 };
 
 /// Reads every *.jsonl in `path` (a folder), in the order of their names, and its catalogue; or `path` itself (a file).
 /// Throws StoreError.
 Contents read(std::filesystem::path const& path);
+
+/// A name that files of a result folder have: nothing else may be put there under it.
+bool is_own_name(std::string_view name);
 
 /// Appends to one file. Each call returns after the line is on disk (fsync). Throws StoreError; what was acknowledged
 /// stays. What a reader would refuse (a run whose cell is not its cell_id, a ragged series) throws
