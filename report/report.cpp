@@ -34,6 +34,7 @@ Document document_of(Facts const& facts) {
   add_constrained(document, facts);
   add_integrators(document, facts);
   add_orders(document, facts);
+  add_speed(document, facts);
   add_failures(document, facts);
   add_references(document, facts);
   add_provenance(document, facts);

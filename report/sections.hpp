@@ -29,11 +29,14 @@ void add_integrators(Document& document, Facts const& facts);
 /// What is kept of a free motion against time: part of the section on integrators.
 void add_conservation(Document& document, Facts const& facts);
 void add_orders(Document& document, Facts const& facts);
+void add_speed(Document& document, Facts const& facts);
 void add_failures(Document& document, Facts const& facts);
 void add_references(Document& document, Facts const& facts);
 void add_provenance(Document& document, Facts const& facts);
 
 // Parts of the answer.
+/// Which method for which need, as a table with its rules.
+void add_needs(Document& document, Facts const& facts);
 /// What an accuracy costs on the headline problems, in one sentence.
 std::string cost_sentence(Facts const& facts);
 /// The picture of norm drift and of cost, if the records hold its curves.
