@@ -14,8 +14,6 @@ namespace {
 using results::Cell;
 using results::Record;
 
-/// A norm that stays within this is kept: some hundred roundings, accumulated over the horizon.
-constexpr double kept = 1e-13;
 /// A change of the error by less is no change: it is what another rounding does.
 constexpr double noticeable = 0.1;
 
@@ -237,6 +235,7 @@ Table norm_table(Facts const& facts) {
 
 void add_answer(Document& document, Facts const& facts) {
   document.section("The answer");
+  add_needs(document, facts);
   document.say("Which integrator keeps the norm, how accurate is it, what does it cost?");
   auto const methods = keeping_of(facts, true);
   document.say(norm_sentence(facts, methods));

@@ -77,8 +77,7 @@ std::optional<Price> between(Record const& run, Record const& coarser, double ta
 std::size_t rank_of(Cell const& c) {
   std::size_t rank = 0;
   for (Headline const& h : headlines) {
-    bool const there = c.problem == h.problem && (h.word.empty() || has_word(c.variant, h.word));
-    if (there && c.set.empty() && !is_aside(c)) return rank;
+    if (is_headline(c, h) && c.set.empty() && !is_aside(c)) return rank;
     ++rank;
   }
   return rank;
@@ -89,6 +88,10 @@ std::size_t rank_of(Cell const& c) {
 bool is_rival(std::string_view integrator) {
   constexpr std::string_view prefixes[] = {"odeint_", "cvode_", "arkode_", "gsl_"};
   return integrator == "ida" || std::ranges::any_of(prefixes, [&](auto p) { return integrator.starts_with(p); });
+}
+
+bool is_foil(std::string_view integrator) {
+  return integrator.starts_with("gauss2_sweeps") || integrator.starts_with("gauss2_tol");
 }
 
 bool has_word(std::string_view variant, std::string_view word) {
@@ -159,19 +162,24 @@ bool Instance::comparable() const {
   return integrators.size() >= 2;
 }
 
+bool is_headline(Cell const& c, Headline const& h) {
+  return c.problem == h.problem && (h.word.empty() || c.variant.empty() || has_word(c.variant, h.word));
+}
+
 bool is_aside(Cell const& cell) {
   constexpr std::string_view words[] = {"coupled", "as_printed", "unlocated"};
   return std::ranges::any_of(words, [&](auto word) { return has_word(cell.variant, word); });
 }
 
-std::optional<Cost> cheapest(Sweep const& sweep, double target, Measure measure) {
+std::optional<Cost> cheapest(Sweep const& sweep, std::optional<double> target, Measure measure) {
   std::optional<Cost> best;
   for (std::size_t i = 0; i < sweep.runs.size(); ++i) {
     Record const& run = *sweep.runs[i];
     auto const price = price_of(run, measure);
-    if (!price || !reaches(run, target) || (best && best->measured <= price->value)) continue;
+    bool const serves = target ? reaches(run, *target) : is_ok(run);
+    if (!price || !serves || (best && best->measured <= price->value)) continue;
     best = Cost{price->value, price->low, price->high, &run, price->value, false};
-    auto const exact_price = i > 0 ? between(run, *sweep.runs[i - 1], target, measure) : std::nullopt;
+    auto const exact_price = i > 0 && target ? between(run, *sweep.runs[i - 1], *target, measure) : std::nullopt;
     if (exact_price) {
       best->value = exact_price->value;
       best->low = exact_price->low;
@@ -182,7 +190,7 @@ std::optional<Cost> cheapest(Sweep const& sweep, double target, Measure measure)
   return best;
 }
 
-std::vector<Cost> ranking(Instance const& instance, double target, Measure measure) {
+std::vector<Cost> ranking(Instance const& instance, std::optional<double> target, Measure measure) {
   std::map<std::string, Cost> best;
   for (Sweep const& sweep : instance.sweeps()) {
     auto const cost = cheapest(sweep, target, measure);

@@ -15,6 +15,10 @@ namespace polhode::report {
 
 /// True for the integrators of other libraries.
 bool is_rival(std::string_view integrator);
+/// True for methods that are careless on purpose (integrators/gauss_foils.hpp): compared, never recommended.
+bool is_foil(std::string_view integrator);
+/// A quantity that drifts by less is kept: some hundred roundings, accumulated over the horizon.
+inline constexpr double kept = 1e-13;
 /// True if the canonical variant ("case1,g1") holds that word.
 bool has_word(std::string_view variant, std::string_view word);
 /// The variant without one of its words: "case1,g1" without "case1" is "g1".
@@ -67,10 +71,10 @@ struct Cost {
 };
 
 /// The cheapest run of one sweep that reaches an attitude error of `target` [rad], and what the target itself costs;
-/// none if no run reaches it with its cost known.
-std::optional<Cost> cheapest(Sweep const& sweep, double target, Measure measure);
-/// Cheapest way of each integrator to an attitude error of `target` [rad], cheapest first.
-std::vector<Cost> ranking(Instance const& instance, double target, Measure measure);
+/// none if no run reaches it with its cost known. Without a target the cheapest run that is ok, whatever its error.
+std::optional<Cost> cheapest(Sweep const& sweep, std::optional<double> target, Measure measure);
+/// Cheapest way of each integrator to an attitude error of `target` [rad], cheapest first; without one as `cheapest`.
+std::vector<Cost> ranking(Instance const& instance, std::optional<double> target, Measure measure);
 /// Time if some run of the instance was timed, otherwise evaluations.
 Measure measure_of(Instance const& instance);
 
@@ -80,12 +84,15 @@ std::optional<double> common_step(std::map<double, std::set<std::string>> const&
 
 /// What the report's question is first asked of: motion without control, a smooth closed loop, sampled control.
 struct Headline {
-  std::string_view problem, word;  ///< and a word of its variant, if it has variants
+  std::string_view problem, word;  ///< and a word of its variant, if it has one
   std::string_view words;          ///< what it is
 };
 inline constexpr Headline headlines[] = {{"free_body", "", "free motion"},
-                                         {"pd_slew", "", "the smooth loop"},
+                                         {"pd_slew", "plain", "the smooth loop"},
                                          {"tether_capture", "case1", "sampled control"}};
+
+/// True if the cell is of that problem and variant, whatever its parameters.
+bool is_headline(results::Cell const& cell, Headline const& headline);
 
 /// All records, one per cell.
 class Facts {

@@ -21,8 +21,6 @@ constexpr double usual_step = 0.1;
 constexpr double coarse_step = 1;
 /// Fewer points than these lie on a line whatever the order is.
 constexpr std::size_t least_points = 3;
-/// A quantity that changes by no more than this is kept.
-constexpr double kept = 1e-13;
 constexpr char const* not_measured = "not measured";
 
 struct Quantity {

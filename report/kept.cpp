@@ -13,8 +13,6 @@ namespace {
 
 using results::Record;
 
-/// A quantity that changes by no more than this is kept.
-constexpr double kept = 1e-13;
 
 struct Quantity {
   std::string_view name;

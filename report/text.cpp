@@ -10,6 +10,8 @@ namespace polhode::report {
 std::string significant(double value, int digits) {
   if (!std::isfinite(value)) return absent;
   std::string text = fmt::format("{:.{}g}", value, digits);
+  // counts and the like: 2410, not 2.41e3
+  if (std::abs(value) >= 1 && std::abs(value) < 1e6) return fmt::format("{}", std::stod(text));
   auto const exponent = text.find('e');
   if (exponent == std::string::npos) return text;
   // "1e-06" is "1e-6" and "2e+06" is "2e6" to a reader

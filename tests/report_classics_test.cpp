@@ -140,7 +140,7 @@ TEST(ReportConstrained, WhoHoldsWhichLevel) {
   EXPECT_TRUE(
       contains(text,
                "Accelerations, |d2Phi/dt2| in m/s^2: held to round-off by none; at the finest step or tolerance "
-               "rattle 1.2e2 at h = 0.000125 s (order 1.00), ida 0.1 at rtol = 0.0001."));
+               "rattle 120 at h = 0.000125 s (order 1.00), ida 0.1 at rtol = 0.0001."));
   EXPECT_TRUE(contains(text, "The multiplier, relative error: held to round-off by none; at"));
 }
 

@@ -70,6 +70,7 @@ std::string plain_from_latex(std::string text) {
                                                                                  {"$\\mu$", "µ"},
                                                                                  {"$\\pm$", "±"},
                                                                                  {"$\\approx$", "≈"},
+                                                                                 {"$\\times$", "×"},
                                                                                  {"$\\leq$", "≤"},
                                                                                  {"$<$", "<"},
                                                                                  {"$>$", ">"},
