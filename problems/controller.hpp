@@ -37,6 +37,10 @@ struct NoTorque {
   NoTorque<T> over() const {
     return {};
   }
+  template <class T, class Of>
+  static NoTorque<T> gathered(Of const&) {
+    return {};
+  }
 };
 
 }  // namespace polhode

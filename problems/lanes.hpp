@@ -9,6 +9,7 @@
 #include <cstring>
 #include <limits>
 
+#include "problems/arctangent.hpp"
 #include "problems/scalar.hpp"
 
 namespace polhode {
@@ -312,6 +313,16 @@ POLHODE_INLINE Lanes<n, double, bytes> cos(Lanes<n, double, bytes> const& x) {
   if (any_of(!(abs_of(x) < L(Pair::farthest)))) [[unlikely]]
     return L::of([&](int i) { return std::cos(x[i]); });
   return Pair(x).cos;
+}
+/// In each lane what arctangent() of doubles gives.
+template <int n, int bytes>
+POLHODE_INLINE Lanes<n, double, bytes> arctangent(Lanes<n, double, bytes> const& y, Lanes<n, double, bytes> const& x) {
+  auto const ordinary = detail::ordinary_point(y, x);
+  Lanes<n, double, bytes> angle = detail::ordinary_arctangent(y, x);
+  if (any_of(!ordinary)) [[unlikely]]
+    for (int i = 0; i < n; ++i)
+      if (!ordinary[i]) angle.set(i, std::atan2(y[i], x[i]));
+  return angle;
 }
 
 }  // namespace polhode

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "problems/controller.hpp"
+#include "problems/lanes_gather.hpp"
 #include "problems/parameters.hpp"
 
 namespace polhode {
@@ -86,6 +87,12 @@ struct HeldTorque {
   POLHODE_INLINE Vec3<S> torque(S const&, Quat<S> const&, Vec3<S> const&) const { return held; }
 };
 
+/// Controllers of single bodies that can be laid into lanes T, each with numbers of its own.
+template <class C, class T>
+concept GathersLanes = requires(C const& (*of)(int)) {
+  C::template gathered<T>(of);
+};
+
 /// The field: attitude space A over scalar S, an inertia and a controller.
 /// state   attitude x omega [rad/s, body]
 template <Scalar S, template <class> class A, class Inertia, Controller Control>
@@ -123,6 +130,20 @@ struct ControlledBody {
       else
         return ControlledBody<T, A, Inertia, decltype(control.template over<T>())>{
             inertia, control.template over<T>(), begin, {}};
+    }
+
+    /// Bodies of one kind in lanes T, each with parameters of its own: lane i is of(i), a body that has not begun. In
+    /// principal axes, under controllers that have gathered<T>(of), too.
+    template <Scalar T, class Of>
+    static auto gathered(Of const& of) requires std::same_as<Inertia, PrincipalInertia<Real<S>>> &&
+        GathersLanes<Control, T> {
+      auto control = Control::template gathered<T>([&](int i) -> Control const& { return of(i).control; });
+      PrincipalInertia<T> const moments(from_lanes<Vec3<T>>(
+                                            T::count, [&](int i) -> auto const& { return of(i).inertia.moments; }),
+                                        T::of([&](int i) { return of(i).inertia.sign; }));
+      auto const begin = from_lanes<Pair<Point<A<T>>, Vec3<T>>>(
+          T::count, [&](int i) -> auto const& { return of(i).start; });
+      return ControlledBody<T, A, PrincipalInertia<T>, decltype(control)>{moments, control, begin};
     }
 
     /// What methods for rigid bodies ask: J [kg m^2, body]; the torque [N m, body], of sampled control the one that is

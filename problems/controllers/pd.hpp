@@ -8,21 +8,26 @@ namespace polhode {
 
 /// torque = -k_p q_v sgn(q_4) - k_d omega: smooth while the scalar part keeps its sign.
 /// Source: Wie & Barba (1985), J. Guidance 8, 360
-/// params  k_p [N m], k_d [N m s]
-template <Scalar S>
+/// params  k_p [N m], k_d [N m s];  K  what they are: lanes where every body has its own
+template <Scalar S, class K = Real<S>>
 struct PdController {
   using Scalar = S;
   static constexpr bool sampled = false;
 
-  Real<S> k_p, k_d;
+  K k_p, k_d;
 
   POLHODE_INLINE Vec3<S> torque(S const&, Quat<S> const& q, Vec3<S> const& omega) const {
-    auto const towards = select(q.w < S(0.0), k_p, -k_p);
+    auto const towards = select(q.w < S(0.0), k_p, K(-k_p));
     return towards * vec(q) - k_d * omega;
   }
   template <class T>
   PdController<T> over() const {
     return {k_p, k_d};
+  }
+  /// Lane i is of(i).
+  template <class T, class Of>
+  static PdController<T, T> gathered(Of const& of) {
+    return {T::of([&](int i) { return of(i).k_p; }), T::of([&](int i) { return of(i).k_d; })};
   }
 };
 

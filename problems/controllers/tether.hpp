@@ -3,7 +3,9 @@
 /// Source: Xu et al. (2017), Applied Mathematics and Mechanics 38(12), 1309, eqs. (17)-(25)
 #include <algorithm>
 
+#include "problems/arctangent.hpp"
 #include "problems/controller.hpp"
+#include "problems/lanes_gather.hpp"
 
 namespace polhode {
 
@@ -15,30 +17,55 @@ enum class TetherCase {
   none = 0        ///< free
 };
 
-/// Numbers of the law, in plain doubles. Gains are not printed in the paper: set G1 was reconstructed.
-struct TetherLaw {
+/// Numbers of the law. Gains are not printed in the paper: set G1 was reconstructed.
+///   K  double, or lanes where every body has its own
+template <class K>
+struct TetherLawOf {
   TetherCase actuators = TetherCase::both;
-  double k_pe = 40;            ///< tension per angle [N/rad]
-  double k_de = 120;           ///< tension per angular rate [N s/rad]
-  double k_pu = 8;             ///< thruster torque per angle [N m/rad]
-  double k_du = 80;            ///< thruster torque per body rate [N m s/rad]
-  double f_max = 30;           ///< greatest tension [N]
-  double u_max = 5;            ///< greatest thruster torque, per axis [N m]
-  double switch_angle = 0;     ///< [rad]
-  double arm = 2;              ///< grapple point at (-arm, 0, 0) in body axes [m]
-  double sample_period = 0.1;  ///< [s]
+  K k_pe{40};            ///< tension per angle [N/rad]
+  K k_de{120};           ///< tension per angular rate [N s/rad]
+  K k_pu{8};             ///< thruster torque per angle [N m/rad]
+  K k_du{80};            ///< thruster torque per body rate [N m s/rad]
+  K f_max{30};           ///< greatest tension [N]
+  K u_max{5};            ///< greatest thruster torque, per axis [N m]
+  K switch_angle{0};     ///< [rad]
+  K arm{2};              ///< grapple point at (-arm, 0, 0) in body axes [m]
+  K sample_period{0.1};  ///< [s]
+
+  template <class F, class... L>
+  static void each(F&& f, L&&... l) {
+    f(l.k_pe...);
+    f(l.k_de...);
+    f(l.k_pu...);
+    f(l.k_du...);
+    f(l.f_max...);
+    f(l.u_max...);
+    f(l.switch_angle...);
+    f(l.arm...);
+    f(l.sample_period...);
+  }
 };
+using TetherLaw = TetherLawOf<double>;
 
 /// Sampled, zero-order hold. Remembers the last angle (for its difference quotient), what it commands, and the effort
 /// spent. alpha = angle between the arm d and the tether's direction r, both in body axes; r is fixed in the orbital
 /// frame.
-template <Scalar S>
+///   K  of the law's numbers
+template <Scalar S, class K = double>
 class TetherController {
  public:
   using Scalar = S;
   static constexpr bool sampled = true;
 
-  explicit TetherController(TetherLaw const& law) : law_(law) {}
+  explicit TetherController(TetherLawOf<K> const& law) : law_(law) {}
+  /// Lane i is of(i), of one case all.
+  template <class T, class Of>
+  static TetherController<T, T> gathered(Of const& of) {
+    auto law = from_lanes<TetherLawOf<T>>(
+        T::count, [&](int i) -> auto const& { return of(i).law_; });
+    law.actuators = of(0).law_.actuators;
+    return TetherController<T, T>(law);
+  }
 
   Vec3<S> torque(Real<S> const&, Quat<S> const& q, Vec3<S> const& omega) {
     effort_ += S(law_.sample_period) * dot(thrust_, thrust_);
@@ -50,20 +77,28 @@ class TetherController {
     last_alpha_ = at.alpha;
     first_ = false;
 
-    bool const below = at.alpha < S(law_.switch_angle);
-    bool const by_tether = law_.actuators == TetherCase::both || (law_.actuators == TetherCase::switched && !below);
-    bool const by_thrusters = law_.actuators == TetherCase::both || law_.actuators == TetherCase::thrusters ||
-                              (law_.actuators == TetherCase::switched && below);
-    if (by_tether) {
+    auto const below = at.alpha < S(law_.switch_angle);
+    if (law_.actuators != TetherCase::none && law_.actuators != TetherCase::thrusters) {
       tension_ = clamp(S(S(law_.k_pe) * at.alpha + S(law_.k_de) * alpha_rate), S(0.0), S(law_.f_max));
       tether_ = (S(law_.arm) * tension_) * at.axis;  // F d x r~
     }
-    if (by_thrusters) {
-      Vec3<S> const towards = S(0.0) < at.sine ? (S(law_.k_pu) * at.alpha / at.sine) * at.axis : zero<Vec3<S>>();
-      thrust_ = clipped(towards - S(law_.k_du) * omega);
+    if (law_.actuators != TetherCase::none) {
+      auto const turned = S(0.0) < at.sine;
+      S const sine = select(turned, at.sine, S(1.0));
+      S const scale = select(turned, S(S(law_.k_pu) * at.alpha / sine), S(0.0));
+      thrust_ = clipped(scale * at.axis - S(law_.k_du) * omega);
+    }
+    if (law_.actuators == TetherCase::switched) {
+      tension_ = select(below, S(0.0), tension_);
+      tether_ = chosen(below, zero<Vec3<S>>(), tether_);
+      thrust_ = chosen(below, thrust_, zero<Vec3<S>>());
     }
     return tether_ + thrust_;
   }
+
+  /// alpha at the last sample; at attitude q [rad].
+  S const& last_angle() const { return last_alpha_; }
+  static S pointing_angle(Quat<S> const& q) { return geometry(q).alpha; }
 
   /// alpha [rad], tether_force [N], torque_x, torque_y, torque_z [N m, held from now on], energy_c [N^2 m^2 s].
   static std::vector<Column> columns() {
@@ -87,15 +122,29 @@ class TetherController {
     Vec3<S> const r = to_body(q, d);  // the platform lies at (-200, 0, 0) m in the orbital frame: along -x, too
     Vec3<S> const axis = cross(d, r);
     S const sine_squared = dot(axis, axis);
-    S const sine = S(0.0) < sine_squared ? S(sqrt(sine_squared)) : S(0.0);  // a series has no square root at 0
-    return {axis, sine, atan2(sine, dot(d, r))};
+    S const sine = root(sine_squared);
+    return {axis, sine, arctangent(sine, dot(d, r))};
+  }
+  /// A series has no square root at 0.
+  static S root(S const& square) {
+    if constexpr (std::same_as<decltype(square < square), bool>)
+      return S(0.0) < square ? S(sqrt(square)) : S(0.0);
+    else
+      return sqrt(square);
+  }
+  template <class Mask>
+  static Vec3<S> chosen(Mask const& mask, Vec3<S> const& a, Vec3<S> const& b) {
+    return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
   }
   Vec3<S> clipped(Vec3<S> const& u) const {
     S const most(law_.u_max);
     return {clamp(u.x, S(-most), most), clamp(u.y, S(-most), most), clamp(u.z, S(-most), most)};
   }
 
-  TetherLaw law_;
+  template <polhode::Scalar, class>
+  friend class TetherController;
+
+  TetherLawOf<K> law_;
   bool first_ = true;
   S last_alpha_{0.0}, tension_{0.0}, effort_{0.0};
   Vec3<S> tether_ = zero<Vec3<S>>(), thrust_ = zero<Vec3<S>>();
