@@ -7,12 +7,15 @@
 
 #include "integrators/catalog.hpp"
 #include "problems/catalog.hpp"
+#include "tests/ending_fields.hpp"
 #include "tests/runs.hpp"
 
 namespace polhode {
 namespace {
 
 using test::a_cell;
+using test::Escape;
+using test::NotANumber;
 
 template <class P>
 auto adaptive(P const& problem, double rtol, NormPolicy policy = NormPolicy::none) {
@@ -33,34 +36,10 @@ TEST(AdaptiveDopri5, ErrorIsProportionalToTheTolerance) {
 
 // ---- Ends that are not ok -------------------------------------------------------------------------------------------
 
-/// x' = x^2 leaves every bound at 1 s.
-struct Escape {
-  using Space = Euclidean3<double>;
-  Vec3<double> operator()(double, Vec3<double> const& x) const { return {x.x * x.x, 0, 0}; }
-  Vec3<double> initial() const { return {1, 0, 0}; }
-};
-
 TEST(AdaptiveDopri5, StepsUnderflowWhereTheSolutionEnds) {
   Escape const problem;
-  Vec3<double> x = problem.initial();
-  auto stepper = adaptive(problem, 1e-8);
-  double t = 0;
-  Status status = Status::ok;
-  while (status == Status::ok && t < 2) status = stepper.step(x, t, 2);
-  EXPECT_EQ(status, Status::step_underflow);
-  EXPECT_NEAR(t, 1, 1e-6);
-  EXPECT_TRUE(all_finite(x)) << "the last accepted state";
+  test::expect_underflow_at_1_s(adaptive(problem, 1e-8), problem.initial());
 }
-
-/// The field is not a number from the time `from` on.
-struct NotANumber {
-  using Space = Euclidean3<double>;
-  double from;
-  Vec3<double> operator()(double t, Vec3<double> const& x) const {
-    return {t < from ? -x.x : std::numeric_limits<double>::quiet_NaN(), 0, 0};
-  }
-  Vec3<double> initial() const { return {1, 0, 0}; }
-};
 
 TEST(AdaptiveDopri5, AFieldThatIsNoNumberAtTheStartHasDiverged) {
   auto const problem = erase_type(NotANumber{0});

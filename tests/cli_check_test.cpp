@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
-#include "tests/cli_process.hpp"
+#include "tests/cli_results.hpp"
 
 namespace polhode::cli {
 namespace {
@@ -13,39 +13,17 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-/// Line 1 to 8: 4 cells in one group, of which one is refused.
-std::string const sweeps = R"(name = 'tiny'
-timing = { min_time = 0.001, repetitions = 3 }
-[[sweep]]
-problem = 'free_body'
-formulation = ['quaternion', 's3']
-integrator = ['rk4', 'gauss2']
-h = 0.1
-t_end = 5
-)";
-
-/// A folder with results of the sweeps; each test puts its own expectations into the suite of a copy.
-class CliCheck : public testing::Test {
+/// A folder with results of the tiny suite; each test puts its own expectations into the suite of a copy.
+class CliCheck : public TinyResults {
  protected:
-  static void SetUpTestSuite() {
-    shared = new Folder;
-    shared->write("suite.toml", sweeps);
-    Result const result = polhode(*shared, "run suite.toml --out results");
-    ASSERT_EQ(result.code, 0) << result.err;
-  }
-  static void TearDownTestSuite() { delete shared; }
-
   void SetUp() override {
     ::unsetenv("CI");
-    fs::copy(shared->path / "results", folder.path / "results", fs::copy_options::recursive);
+    copy_results_to("results");
   }
   Result check(std::string const& expectations, std::string const& flags = "") {
-    folder.write("results/suite.toml", sweeps + expectations);
+    folder.write("results/suite.toml", tiny_suite + expectations);
     return polhode(folder, "check results --golden golden " + flags);
   }
-
-  static inline Folder* shared = nullptr;
-  Folder folder;
 };
 
 std::string const right =
@@ -83,7 +61,7 @@ TEST_F(CliCheck, NothingToJudgeExitsWith3) {
   Result const nothing = check("[[expect]]\nselect = { h = 0.2 }\nnorm_drift = { max = 1 }\n");
   EXPECT_EQ(nothing.code, 3);
   EXPECT_THAT(nothing.err, HasSubstr("no expectation selects a cell with a record"));
-  folder.write("empty/suite.toml", sweeps + right);
+  folder.write("empty/suite.toml", tiny_suite + right);
   Result const empty = polhode(folder, "check empty");
   EXPECT_EQ(empty.code, 3);
   EXPECT_THAT(empty.err, HasSubstr("holds no records"));
@@ -142,7 +120,7 @@ TEST_F(CliCheck, GoldenColumnsAreWrittenComparedAndChanged) {
 }
 
 TEST_F(CliCheck, NobodyUpdatesGoldenColumnsInCi) {
-  folder.write("results/suite.toml", sweeps + right);
+  folder.write("results/suite.toml", tiny_suite + right);
   Result const result = polhode(folder, "check results --golden golden --update", {"CI=true"});
   EXPECT_EQ(result.code, 2);
   EXPECT_THAT(result.err, HasSubstr("--update: not where CI is set"));

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "tests/cli_process.hpp"
+#include "tests/cli_results.hpp"
 
 namespace polhode::cli {
 namespace {
@@ -14,30 +14,11 @@ using testing::HasSubstr;
 using testing::Not;
 using Json = nlohmann::json;
 
-std::string const suite = R"(name = 'tiny'
-timing = { min_time = 0.001, repetitions = 5 }
-[[sweep]]
-problem = 'free_body'
-formulation = ['quaternion', 's3']
-integrator = ['rk4', 'gauss2']
-h = 0.1
-t_end = 5
-)";
-
 /// The folder of results that every test compares with.
-class CliCompare : public testing::Test {
+class CliCompare : public TinyResults {
  protected:
-  static void SetUpTestSuite() {
-    shared = new Folder;
-    shared->write("suite.toml", suite);
-    Result const result = polhode(*shared, "run suite.toml --out results");
-    ASSERT_EQ(result.code, 0) << result.err;
-  }
-  static void TearDownTestSuite() { delete shared; }
-
   void SetUp() override {
-    for (char const* name : {"a", "b"})
-      fs::copy(shared->path / "results", folder.path / name, fs::copy_options::recursive);
+    for (char const* name : {"a", "b"}) copy_results_to(name);
   }
   /// Applies f to every run in b.
   void change(std::function<void(Json&)> const& f) const {
@@ -53,9 +34,6 @@ class CliCompare : public testing::Test {
       std::ofstream(entry.path(), std::ios::binary) << out;
     }
   }
-
-  static inline Folder* shared = nullptr;
-  Folder folder;
 };
 
 void spoil(Json& json) {
@@ -130,7 +108,7 @@ TEST_F(CliCompare, ColoursOnlyWhereTheyAreForced) {
 
 TEST_F(CliCompare, Mistakes) {
   folder.write("empty/x.txt", "");
-  folder.write("other.toml", suite + "\n[[exclude]]\nh = 0.1\n");
+  folder.write("other.toml", tiny_suite + "\n[[exclude]]\nh = 0.1\n");
   struct Mistake {
     std::string words;
     int code;
@@ -153,7 +131,7 @@ TEST_F(CliCompare, Mistakes) {
 
 TEST_F(CliCompare, NothingInCommonExitsWith3) {
   change([](Json& json) { json.erase("nothing"); });
-  folder.write("far.toml", std::string(suite).replace(suite.find("h = 0.1"), 7, "h = 0.05"));
+  folder.write("far.toml", std::string(tiny_suite).replace(tiny_suite.find("h = 0.1"), 7, "h = 0.05"));
   ASSERT_EQ(polhode(folder, "run far.toml --out far").code, 0);
   Result const result = polhode(folder, "compare a far");
   EXPECT_EQ(result.code, 3);

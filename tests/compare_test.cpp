@@ -7,6 +7,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "tests/made_up_record.hpp"
+
 namespace polhode::results {
 namespace {
 
@@ -15,15 +17,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 Record record_of(std::string const& integrator, double h, std::string const& build = "new") {
-  Record record;
-  record.of.problem = "free_body";
-  record.of.formulation = "quaternion";
-  record.of.integrator = integrator;
-  record.of.h = h;
-  record.of.t_end = 50;
-  record.cell = cell_id(record.of);
-  record.build = build;
-  record.steps = 500;
+  Record record = test::made_up_record(integrator, h, build);
   record.evaluations = 2000;
   record.norm_drift_max = 1e-9;
   record.attitude_error_max = 1e-6;

@@ -2,19 +2,18 @@
 #include <gtest/gtest.h>
 
 #include "problems/group_consensus.hpp"
+#include "tests/chosen_problem.hpp"
 #include "tests/swarm_runs.hpp"
 
 namespace polhode {
 namespace {
 
 using test::history_of;
+using test::Numbers;
 using test::run_swarm;
-using Words = std::set<std::string>;
-using Numbers = std::map<std::string, std::vector<double>>;
+using test::Words;
 
-GroupConsensus chosen(Words const& words, Numbers const& set = {}) {
-  return GroupConsensus(Choice{.words = words, .set = set});
-}
+constexpr test::Chooser<GroupConsensus> chosen;
 /// The paper's graph with weights +-c between the groups: eigenvalues 0, 0, (5 -+ sqrt(1 + 16 c^2)) / 2, 3.
 std::vector<double> coupled_by(double c) {
   return {1, 2, 1, 1, 3, 1, 2, 3, 1, 4, 5, 1, 1, 4, c, 2, 5, c, 1, 5, -c, 2, 4, -c};

@@ -2,9 +2,9 @@
 /// methods, the spectrum and its warnings, the shadow point, theorem 2's counterexample, claims, choices.
 #include <gtest/gtest.h>
 
-#include "bench/allocations.hpp"
 #include "problems/dual.hpp"
 #include "problems/group_consensus.hpp"
+#include "tests/chosen_problem.hpp"
 #include "tests/random_numbers.hpp"
 #include "tests/swarm_runs.hpp"
 
@@ -12,24 +12,16 @@ namespace polhode {
 namespace {
 
 using test::columns_of;
+using test::expect_near;
 using test::history_of;
 using test::in;
+using test::Numbers;
 using test::Random;
 using test::run_swarm;
-using Words = std::set<std::string>;
-using Numbers = std::map<std::string, std::vector<double>>;
+using test::Words;
 using Rates = Many<Pair<Vec3<double>, Vec3<double>>, dynamic>;
 
-GroupConsensus chosen(Words const& words, Numbers const& set = {}) {
-  return GroupConsensus(Choice{.words = words, .set = set});
-}
-template <template <class> class A, class S = double>
-auto field_of(Words const& words, Numbers const& set = {}) {
-  return chosen(words, set).field<S, A, true>();
-}
-void expect_near(Vec3<double> const& a, Vec3<double> const& b, double tolerance, std::string const& what = "") {
-  EXPECT_LE(distance<double>(a, b), tolerance) << what << ": (" << a.x << ", " << a.y << ", " << a.z << ")";
-}
+constexpr test::Chooser<GroupConsensus> chosen;
 
 // ---- The field ------------------------------------------------------------------------------------------------------
 
@@ -41,7 +33,7 @@ TEST(ConsensusField, TorqueOfBody3ByHand) {
   double const z = dot(s3, s3);
   Vec3<double> const transposed =  // G^T v with 2 G = (1 - z) / 2 + hat(s) + s s^T
       0.5 * (0.5 * (1 - z) * apart - cross(s3, apart) + dot(s3, apart) * s3);
-  auto const field = field_of<Mrp>({"ic1"});
+  auto const field = chosen.field<Mrp>({"ic1"});
   auto const x = field.initial();
   Rates v(5);
   field(0, x, v);
@@ -50,7 +42,7 @@ TEST(ConsensusField, TorqueOfBody3ByHand) {
   expect_near(v[2].second, -1.0 * (transposed + slip), 1e-14);
   // Body 4 hears 5, 1 (+) and 2 (-): omega part alone, all sigma = 0.
   Rates u(5);
-  auto const rates_alone = field_of<Mrp>({"ic2"});
+  auto const rates_alone = chosen.field<Mrp>({"ic2"});
   rates_alone(0, rates_alone.initial(), u);
   Vec3<double> const w4{-2.42, 1.58, 1.61};
   expect_near(u[3].second, -1.0 * ((w4 - Vec3<double>{0, 0, 0}) + (w4 - w1) - (w4 - w2)), 1e-15);
@@ -61,8 +53,8 @@ TEST(ConsensusField, DerivativeOfVByDualNumbers) {
   using D = Dual<1>;
   Random random(5);
   Numbers const unequal{{"inertia", {1, 1.5, 2.2}}};
-  auto const field = field_of<Mrp>({"ic1"}, unequal);
-  auto const dual = field_of<Mrp, D>({"ic1"}, unequal);
+  auto const field = chosen.field<Mrp>({"ic1"}, unequal);
+  auto const dual = chosen.field<Mrp, D>({"ic1"}, unequal);
   Eigen::MatrixXd const L = laplacian(field.graph);
   D s(0.0);
   s.slope[0] = 1;
@@ -88,7 +80,7 @@ TEST(ConsensusField, DerivativeOfVByDualNumbers) {
 /// The velocities of the field on A at given attitudes and rates.
 template <template <class> class A>
 Rates velocities(Words const& words, std::vector<Quat<double>> const& q, std::vector<Vec3<double>> const& omega) {
-  auto const field = field_of<A>(words);
+  auto const field = chosen.field<A>(words);
   auto x = field.initial();
   for (std::size_t i = 0; i < 5; ++i) x[int(i)] = {A<double>::from_attitude(q[i]), omega[i]};
   Rates v(5);
@@ -120,20 +112,7 @@ TEST(ConsensusField, IsTheSameInEveryFormulation) {
 }
 
 TEST(ConsensusField, AllocatesNothing) {
-  auto field = field_of<S3>({"shadow"});
-  auto const x = field.initial();
-  Rates v(5);
-  std::array<double, 5> g{};
-  std::array<double, 9> shown{};
-  auto const before = bench::allocations_of_this_thread();
-  field(0, x, v);
-  field.take_sides(0, x);
-  field.event_values(0, x, g);
-  field.cross(2);
-  field(0, x, v);
-  field.show(x, shown);
-  EXPECT_EQ(bench::allocations_of_this_thread() - before, 0);
-  EXPECT_TRUE(all_finite(v));
+  test::expect_no_allocations<5, 9>(chosen.field<S3>({"shadow"}));
 }
 
 // ---- Our reference values, each by three methods --------------------------------------------------------------------
@@ -196,7 +175,7 @@ TEST(ConsensusReference, SteadyRates) {
 TEST(ConsensusReference, BodiesReachTheMeanOfTheirGroupBy400SecondsNotBy200) {
   // By body, the greatest component of omega_i - group mean.
   auto const off = [](double t_end) {
-    auto const field = field_of<FlatQuaternion>({"ic1"});
+    auto const field = chosen.field<FlatQuaternion>({"ic1"});
     auto const x = run_swarm(field, Gauss<4>{}, 0.02, t_end).x;
     auto const mean = field.group_rates(x);
     std::vector<double> by_body;
@@ -222,7 +201,7 @@ TEST(ConsensusReference, WhatRk4MissesAt100Seconds) {
 }
 
 TEST(ConsensusReference, LateSigmaSwingsBetweenAPointAndItsShadow) {
-  auto const field = field_of<S3>({"ic3"});
+  auto const field = chosen.field<S3>({"ic3"});
   std::array<double, 5> least, most{};
   least.fill(1e300);
   run_swarm(field, CommutatorFree4{}, 0.01, 200, field.initial(), [&](double t, auto const& x) {
@@ -243,16 +222,16 @@ TEST(ConsensusReference, LateSigmaSwingsBetweenAPointAndItsShadow) {
 
 TEST(ConsensusShadow, FormulationsAgreeAcrossEvents) {
   Words const shadow{"ic1", "shadow"};
-  auto const exact = run_swarm(field_of<FlatQuaternion>(shadow), Gauss<4>{}, 0.01, 5);
+  auto const exact = run_swarm(chosen.field<FlatQuaternion>(shadow), Gauss<4>{}, 0.01, 5);
   ASSERT_GE(exact.events.size(), 5u);
   auto const expect_same = [&](auto const& run, std::string const& name) {
     ASSERT_EQ(run.events.size(), exact.events.size()) << name;
     for (std::size_t k = 0; k < run.events.size(); ++k) EXPECT_NEAR(run.events[k], exact.events[k], 1e-8) << name;
     for (int i = 0; i < 5; ++i) expect_near(run.x[i].second, exact.x[i].second, 1e-7, name);
   };
-  expect_same(run_swarm(field_of<S3>(shadow), CommutatorFree4{}, 2e-3, 5), "s3");
-  expect_same(run_swarm(field_of<MrpShadow>(shadow), Rk4{}, 2e-3, 5), "mrp_shadow");
-  expect_same(run_swarm(field_of<Mrp>(shadow), Rk4{}, 2e-3, 5), "mrp");
+  expect_same(run_swarm(chosen.field<S3>(shadow), CommutatorFree4{}, 2e-3, 5), "s3");
+  expect_same(run_swarm(chosen.field<MrpShadow>(shadow), Rk4{}, 2e-3, 5), "mrp_shadow");
+  expect_same(run_swarm(chosen.field<Mrp>(shadow), Rk4{}, 2e-3, 5), "mrp");
 }
 
 TEST(ConsensusShadow, MakesVJumpUpAndKeepsTheGroupsApart) {

@@ -7,25 +7,18 @@
 #include "problems/dead_zone.hpp"
 #include "problems/dual.hpp"
 #include "problems/jet.hpp"
+#include "tests/chosen_problem.hpp"
 #include "tests/random_numbers.hpp"
 
 namespace polhode {
 namespace {
 
-using Real3 = Vec3<double>;
-using Words = std::set<std::string>;
-using Numbers = std::map<std::string, std::vector<double>>;
+using test::expect_near;
+using test::Numbers;
+using test::Real3;
+using test::Words;
 
-DeadZone chosen(Words const& words, Numbers const& set = {}) {
-  return DeadZone(Choice{.words = words, .set = set});
-}
-template <template <class> class A = FlatQuaternion, class S = double>
-auto field_of(Words const& words, Numbers const& set = {}) {
-  return chosen(words, set).field<S, A, true>();
-}
-void expect_near(Real3 const& a, Real3 const& b, double tolerance, std::string const& what = "") {
-  EXPECT_LE(distance<double>(a, b), tolerance) << what << " (" << a.x << ", " << a.y << ", " << a.z << ")";
-}
+constexpr test::Chooser<DeadZone> chosen;
 static_assert(Definition<DeadZone>);
 static_assert(std::is_trivially_copyable_v<DeadZoneBody<double, S3<double>>>, "or a step cannot keep it in registers");
 
@@ -112,7 +105,7 @@ TEST(DeadZonePath, RatesAreItsDerivatives) {
 // The cubic's lambda'' ends at 6 sigma_0 / t_f^2 + 2 sigma_0' / t_f and is 0 from then on: v falls by 4 M^-1 J of it.
 TEST(DeadZonePath, OnTheCubicTheCommandJumpsAtTheEnd) {
   auto const fall = [](Words const& words) {
-    auto field = field_of<S3>(words);
+    auto field = chosen.field<S3>(words);
     S3<double>::Point const identity{0, 0, 0, 1};
     Real3 const before = field.signals(50, {identity, at_rest}).v;
     field.enter_phase(50);
@@ -147,8 +140,8 @@ TEST(DeadZoneLaw, ByHand) {
 // On `smooth` with the inertia known, the closed loop is s' = -k sat(s / beta) + G J^-1 tau_d, whatever the state.
 TEST(DeadZoneLaw, MakesTheSlidingVariableDecay) {
   test::Random random(3);
-  auto const field = field_of<FlatQuaternion>({"smooth", "n1"});
-  auto const moving = field_of<FlatQuaternion, Dual<1>>({"smooth", "n1"});
+  auto const field = chosen.field<FlatQuaternion>({"smooth", "n1"});
+  auto const moving = chosen.field<FlatQuaternion, Dual<1>>({"smooth", "n1"});
   int saturated = 0, within = 0;
   for (int i = 0; i < 200; ++i) {
     double const t = random.uniform(0, 50);
@@ -227,7 +220,7 @@ TEST(DeadZoneActuators, HeldSidesDecideInsteadOfTheCommand) {
 
 TEST(DeadZoneField, IsEulersEquationWithTheTrueInertia) {
   double const p = 0.25;
-  auto const field = field_of<S3>({"printed"}, {{"inertia_error", {p}}});
+  auto const field = chosen.field<S3>({"printed"}, {{"inertia_error", {p}}});
   auto const x = field.initial();
   double const t = 3;
   Mat3<double> const J = chosen({}, {{"inertia_error", {p}}}).body().matrix<double>();
@@ -244,9 +237,9 @@ TEST(DeadZoneField, IsEulersEquationWithTheTrueInertia) {
 
 TEST(DeadZoneField, IsOneForEveryScalar) {
   for (char const* kind : {"printed", "continuous", "smooth"}) {
-    auto const field = field_of<FlatQuaternion>({kind});
-    auto const in_quad = field_of<FlatQuaternion, Quad>({kind});
-    auto const in_series = field_of<FlatQuaternion, Jet<double, 4>>({kind});
+    auto const field = chosen.field<FlatQuaternion>({kind});
+    auto const in_quad = chosen.field<FlatQuaternion, Quad>({kind});
+    auto const in_series = chosen.field<FlatQuaternion, Jet<double, 4>>({kind});
     auto const x = field.initial();
     Pair<Quat<Quad>, Vec3<Quad>> const x_quad{test::in<Quad>(x.first), test::in<Quad>(x.second)};
     Pair<Quat<Jet<double, 4>>, Vec3<Jet<double, 4>>> const x_series{test::in<Jet<double, 4>>(x.first),
@@ -264,9 +257,9 @@ TEST(DeadZoneField, IsOneForEveryScalar) {
 // ---- Events ---------------------------------------------------------------------------------------------------------
 
 TEST(DeadZoneEvents, KinksAreThoseOfTheContinuousActuators) {
-  EXPECT_EQ(field_of<S3>({"continuous"}).state_events(), 6);
-  EXPECT_EQ(field_of<S3>({"printed"}).state_events(), 0) << "it slides: events would never end";
-  EXPECT_EQ(field_of<S3>({"smooth"}).state_events(), 0);
+  EXPECT_EQ(chosen.field<S3>({"continuous"}).state_events(), 6);
+  EXPECT_EQ(chosen.field<S3>({"printed"}).state_events(), 0) << "it slides: events would never end";
+  EXPECT_EQ(chosen.field<S3>({"smooth"}).state_events(), 0);
   EXPECT_TRUE(chosen({"printed"}).switches());
   EXPECT_TRUE(chosen({"continuous"}).switches());
   EXPECT_FALSE(chosen({"smooth"}).switches());
@@ -275,11 +268,11 @@ TEST(DeadZoneEvents, KinksAreThoseOfTheContinuousActuators) {
   EXPECT_NE(chosen({"printed"}).no_reference(), "");
   EXPECT_EQ(chosen({"continuous"}).no_reference(), "");
   EXPECT_EQ(chosen({"smooth"}).no_reference(), "");
-  EXPECT_EQ(field_of<S3>({}, {{"t_f", {80}}}).time_events(), std::vector<double>{80});
+  EXPECT_EQ(chosen.field<S3>({}, {{"t_f", {80}}}).time_events(), std::vector<double>{80});
 }
 
 TEST(DeadZoneEvents, ValuesAreDistancesFromTheBreakpoints) {
-  auto const field = field_of<S3>({"continuous"});
+  auto const field = chosen.field<S3>({"continuous"});
   auto const x = field.initial();
   Real3 const v = field.signals(2, x).v;
   std::array<double, 6> g{};
@@ -289,7 +282,7 @@ TEST(DeadZoneEvents, ValuesAreDistancesFromTheBreakpoints) {
 }
 
 TEST(DeadZoneEvents, SidesAreHeldFromWhenTheyAreTakenUntilTheyAreCrossed) {
-  auto const free = field_of<S3>({"continuous"});
+  auto const free = chosen.field<S3>({"continuous"});
   auto held = free;
   auto const x = free.initial();
   Real3 const v = free.signals(0, x).v;
@@ -310,13 +303,13 @@ TEST(DeadZoneEvents, SidesAreHeldFromWhenTheyAreTakenUntilTheyAreCrossed) {
   held.cross(5);
   expect_near(held(0, other).second, free(0, other).second, 0);
 
-  auto printed = field_of<S3>({"printed"});
+  auto printed = chosen.field<S3>({"printed"});
   printed.take_sides(0, x);
   EXPECT_FALSE(printed.holds_sides) << "nothing would ever change them";
 }
 
 TEST(DeadZoneEvents, TheFieldWaitsForItsPhase) {
-  auto field = field_of<S3>({"smooth"});
+  auto field = chosen.field<S3>({"smooth"});
   S3<double>::Point const identity{0, 0, 0, 1};
   Real3 const before = field(50, {identity, at_rest}).second;
   field.enter_phase(0);
@@ -340,7 +333,7 @@ TEST(DeadZoneChoices, GainSetsAndParameters) {
   EXPECT_EQ(gains({"n4"}), (std::array{31.6, 1.58e-4, 5e-3}));
   EXPECT_THROW(chosen({}, {{"inertia_error", {-1}}}), ParameterError);
   EXPECT_THROW(chosen({}, {{"t_f", {0}}}), ParameterError);
-  auto const start = field_of<SO3>({}, {{"sigma0", {0, 0, 2}}}).initial();
+  auto const start = chosen.field<SO3>({}, {{"sigma0", {0, 0, 2}}}).initial();
   expect_near(start.first.e1, {std::cos(4 * std::atan(2.0)), std::sin(4 * std::atan(2.0)), 0}, 1e-15, "4 atan |sigma|");
 }
 

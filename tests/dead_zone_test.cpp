@@ -8,24 +8,17 @@
 #include "integrators/lie_group.hpp"
 #include "integrators/runge_kutta.hpp"
 #include "problems/dead_zone.hpp"
+#include "tests/chosen_problem.hpp"
 
 namespace polhode {
 namespace {
 
-using Real3 = Vec3<double>;
-using Words = std::set<std::string>;
-using Numbers = std::map<std::string, std::vector<double>>;
+using test::expect_near;
+using test::Numbers;
+using test::Real3;
+using test::Words;
 
-DeadZone chosen(Words const& words, Numbers const& set = {}) {
-  return DeadZone(Choice{.words = words, .set = set});
-}
-template <template <class> class A = FlatQuaternion, class S = double>
-auto field_of(Words const& words, Numbers const& set = {}) {
-  return chosen(words, set).field<S, A, true>();
-}
-void expect_near(Real3 const& a, Real3 const& b, double tolerance, std::string const& what = "") {
-  EXPECT_LE(distance<double>(a, b), tolerance) << what << " (" << a.x << ", " << a.y << ", " << a.z << ")";
-}
+constexpr test::Chooser<DeadZone> chosen;
 
 // ---- Driving --------------------------------------------------------------------------------------------------------
 
@@ -90,9 +83,9 @@ void expect_state(Field const& field, double t, X const& x, Documented const& ex
 TEST(DeadZoneReference, SmoothByTwoMethods) {
   Documented const expected{{0.5081534459900, 0.01383502456497, 0.2393699387606},
                             {0.0583598836249, -0.0782008474008, 0.1032905096102}};
-  auto const flat = field_of<FlatQuaternion>({"smooth"});
+  auto const flat = chosen.field<FlatQuaternion>({"smooth"});
   expect_state(flat, 10, state_at(Gauss<3>{}, flat, 0.0025, 10), expected, 1e-13);
-  auto const group = field_of<SO3>({"smooth"});
+  auto const group = chosen.field<SO3>({"smooth"});
   expect_state(group, 10, state_at(CommutatorFree4{}, group, 1e-4, 10), expected, 1e-13);
 }
 
@@ -101,13 +94,13 @@ TEST(DeadZoneReference, PrintedBySmallSteps) {
                          {0.0583598773922, -0.0782007231258, 0.1032904989848}};
   Documented const at_25{{0.5442436243194, -0.1796142629439, 0.1857596746911},
                          {-0.0639998755994, 0.00892660718593, -0.01137493383306}};
-  auto const field = field_of<FlatQuaternion>({"printed"});
+  auto const field = chosen.field<FlatQuaternion>({"printed"});
   expect_state(field, 10, state_at(Rk4{}, field, 5e-4, 10), at_10, 1e-10);
   expect_state(field, 25, state_at(Rk4{}, field, 5e-4, 25), at_25, 1e-10);
 }
 
 TEST(DeadZoneReference, PeaksOfTheCommand) {
-  auto const claims = claims_of(chosen({}), history_of(Rk4{}, field_of<FlatQuaternion>({}), 2.5e-3, 60, 1));
+  auto const claims = claims_of(chosen({}), history_of(Rk4{}, chosen.field<FlatQuaternion>({}), 2.5e-3, 60, 1));
   EXPECT_NEAR(*claims.at("v_x_peak").value, 16.66, 0.005);
   EXPECT_NEAR(*claims.at("v_y_peak").value, 31.38, 0.005);
   EXPECT_NEAR(*claims.at("v_z_peak").value, 17.86, 0.005);
@@ -123,7 +116,7 @@ TEST(DeadZoneBounds, HoldForEveryInertiaAndTime) {
         DeadZone const problem = chosen({kind}, set);
         EXPECT_EQ(problem.horizon, t_f + 50);
         auto const claims =
-            claims_of(problem, history_of(Rk4{}, field_of<FlatQuaternion>({kind}, set), 5e-3, problem.horizon, 4));
+            claims_of(problem, history_of(Rk4{}, chosen.field<FlatQuaternion>({kind}, set), 5e-3, problem.horizon, 4));
         EXPECT_EQ(claims.at("sigma_rest").holds, true) << *claims.at("sigma_rest").value;
         EXPECT_EQ(claims.at("layer").holds, true) << *claims.at("layer").value;
         EXPECT_NEAR(*claims.at("sigma_max").value, t_f == 50 ? 0.68674 : 1.19824, 1e-5);
@@ -134,7 +127,7 @@ TEST(DeadZoneBounds, HoldForEveryInertiaAndTime) {
 TEST(DeadZoneFormulations, AreOneProblem) {
   for (double t : {35.0, 82.0}) {
     auto const at = [&]<template <class> class A>() {
-      auto const x = state_at(Gauss<3>{}, field_of<A>({"smooth"}, {{"t_f", {80}}}), 2.5e-3, t);
+      auto const x = state_at(Gauss<3>{}, chosen.field<A>({"smooth"}, {{"t_f", {80}}}), 2.5e-3, t);
       return Pair<Quat<double>, Real3>{A<double>::attitude(x.first), x.second};
     };
     auto const quaternion = at.template operator()<FlatQuaternion>();
@@ -147,7 +140,7 @@ TEST(DeadZoneFormulations, AreOneProblem) {
 }
 
 TEST(DeadZoneOrder, Rk4HasOrderFourOnSmooth) {
-  auto const field = field_of<FlatQuaternion>({"smooth", "n4"});
+  auto const field = chosen.field<FlatQuaternion>({"smooth", "n4"});
   auto const exact = state_at(Gauss<4>{}, field, 2.5e-3, 10);
   auto const error = [&](double h) { return distance<double>(state_at(Rk4{}, field, h, 10), exact); };
   double const coarse = error(4e-3), middle = error(2e-3), fine = error(1e-3);

@@ -15,6 +15,7 @@
 
 #include "results/merge.hpp"
 #include "results/run_name.hpp"
+#include "tests/made_up_record.hpp"
 
 namespace polhode::results {
 namespace {
@@ -25,15 +26,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 Record record_of(std::string const& integrator, double h, std::string const& build = "b") {
-  Record record;
-  record.of.problem = "free_body";
-  record.of.formulation = "quaternion";
-  record.of.integrator = integrator;
-  record.of.h = h;
-  record.of.t_end = 50;
-  record.cell = cell_id(record.of);
-  record.build = build;
-  record.steps = 500;
+  Record record = test::made_up_record(integrator, h, build);
   record.norm_drift_max = 1.0 / 3 * 1e-15;
   record.cpu_time_s = CpuTime{2.5e-5, 2.25e-5, 3e-5, 5};
   return record;

@@ -8,11 +8,13 @@
 #include "problems/erased.hpp"
 #include "problems/pd_slew.hpp"
 #include "problems/quaternion_sync.hpp"
+#include "tests/ending_fields.hpp"
 #include "tests/random_numbers.hpp"
 
 namespace polhode {
 namespace {
 
+using test::NotANumber;
 template <Scalar S, template <class> class A>
 S attitude_error(int stages, double rtol) {
   static auto const exact = [] {
@@ -88,16 +90,6 @@ TEST(AdaptiveGauss, RunsOnManyBodies) {
   EXPECT_LT(distance<double>(x, fine), 1e-8);
   EXPECT_LT(distance<double>(y, fine), 1e-8);
 }
-
-/// The field is not a number from the time `from` on.
-struct NotANumber {
-  using Space = Euclidean3<double>;
-  double from;
-  Vec3<double> operator()(double t, Vec3<double> const& x) const {
-    return {t < from ? -x.x : std::numeric_limits<double>::quiet_NaN(), 0, 0};
-  }
-  Vec3<double> initial() const { return {1, 0, 0}; }
-};
 
 TEST(AdaptiveGauss, EndsWhereTheFieldEnds) {
   auto x = NotANumber{0}.initial();

@@ -10,11 +10,13 @@
 
 #include "problems/controllers/consensus.hpp"
 #include "problems/controllers/synchronisation.hpp"
+#include "tests/chosen_problem.hpp"
 #include "tests/random_numbers.hpp"
 
 namespace polhode {
 namespace {
 
+using test::expect_near;
 using test::Random;
 
 /// What a ParameterError says; empty if there is none.
@@ -241,10 +243,6 @@ TEST(RandomDigraph, IsLinearInItsNodes) {
 }
 
 // ---- The laws, link by link -----------------------------------------------------------------------------------------
-
-void expect_near(Vec3<double> const& a, Vec3<double> const& b, double tolerance) {
-  EXPECT_LE(distance<double>(a, b), tolerance) << "(" << a.x << ", " << a.y << ", " << a.z << ")";
-}
 
 TEST(Protocols, ByHand) {
   Quat<double> const own{0.1, 0.2, 0.3, -0.9}, heard{0.4, 0.1, -0.5, 0.7};

@@ -100,25 +100,12 @@ TEST(GslMsadams, StartsAnewAtSamples) {
   expect_sampled<GslMsadams>(1e-10, 1e-7);
 }
 
-/// Work of 60 s of the slew in pieces of half a second, restarted at each or not.
-template <class Method>
-Work work_in_pieces(bool restart_at_each) {
-  auto const problem = erase<double, FlatQuaternion>(PdSlew(Choice{}));
-  auto stepper = Method{}.bind(*problem, Adaptive{1e-8, 1e-10}, NormPolicy::none);
-  auto x = problem->initial();
-  for (int i = 0; i < 120; ++i) {
-    if (restart_at_each) stepper.restart();
-    EXPECT_EQ(stepper.advance(x, 0.5 * i, 0.5 * (i + 1)), Status::ok);
-  }
-  EXPECT_LT(angle_between(x.first, Quat<double>{0, 0, 0, 1}), 0.0065);
-  return stepper.work();
-}
 TEST(GslMsadams, ARestartForgetsItsHistory) {
-  EXPECT_GT(work_in_pieces<GslMsadams>(true).steps, 3 * work_in_pieces<GslMsadams>(false).steps);
+  EXPECT_GT(test::slew_in_pieces<GslMsadams>(true).work.steps, 3 * test::slew_in_pieces<GslMsadams>(false).work.steps);
 }
 TEST(GslRk8pd, KeepsItsStepSizeOverARestart) {
-  EXPECT_EQ(work_in_pieces<GslRk8pd>(true).steps, work_in_pieces<GslRk8pd>(false).steps);
-  EXPECT_LE(work_in_pieces<GslRk8pd>(true).steps, 125) << "one a piece, once the step has grown";
+  EXPECT_EQ(test::slew_in_pieces<GslRk8pd>(true).work.steps, test::slew_in_pieces<GslRk8pd>(false).work.steps);
+  EXPECT_LE(test::slew_in_pieces<GslRk8pd>(true).work.steps, 125) << "one a piece, once the step has grown";
 }
 
 TEST(GslMsadams, ANewRunRepeatsTheLastToTheBit) {

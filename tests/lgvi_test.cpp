@@ -53,14 +53,7 @@ TEST(Lgvi, HasOrder2UnderTorquesOfEveryKind) {
 TEST(Lgvi, HasOrder2UnderSampledControl) {
   auto const after_6_s = [](auto const& method, double h) {
     auto problem = TetherCapture(Choice{}).field<Quad, S3, true>();
-    auto x = problem.initial();
-    auto stepper = method.bind(problem, FixedStep{h}, NormPolicy::none);
-    for (double t : {0., 2., 4.}) {
-      problem.sample(t, x);
-      stepper.restart();
-      EXPECT_EQ(stepper.advance(x, t, t + 2), Status::ok);
-    }
-    return x;
+    return test::tether_after_6_s(method, problem, h);
   };
   auto const exact = after_6_s(Gauss<8>{}, 0.125);
   auto const error = [&](double h) { return angle_apart<S3<Quad>>(after_6_s(LieVariational2{}, h), exact); };

@@ -65,6 +65,19 @@ inline double order_of(double with_h, double with_half) {
   return std::log2(with_h / with_half);
 }
 
+/// The tether's control, sampled every 2 s and held, over three samples.
+template <class P>
+auto tether_after_6_s(auto const& method, P& problem, double h) {
+  auto x = problem.initial();
+  auto stepper = method.bind(problem, FixedStep{h}, NormPolicy::none);
+  for (double t : {0., 2., 4.}) {
+    problem.sample(t, x);
+    stepper.restart();
+    EXPECT_EQ(stepper.advance(x, t, t + 2), Status::ok);
+  }
+  return x;
+}
+
 /// Goes n steps of h forth and back; returns how far from the start it ends.
 template <class Method, class P>
 double forth_and_back(Method const& method, P const& problem, double h, int n) {

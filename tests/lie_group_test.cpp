@@ -133,23 +133,11 @@ void expect_order_on_the_shaken_body(Method const& method) {
       << Method::info.name << " on " << A<Quad>::name;
 }
 
-/// The tether's control, sampled every 2 s and held, over three samples.
-template <class P>
-auto tether_after_6_s(auto const& method, P& problem, double h) {
-  auto x = problem.initial();
-  auto stepper = method.bind(problem, FixedStep{h}, NormPolicy::none);
-  for (double t : {0., 2., 4.}) {
-    problem.sample(t, x);
-    stepper.restart();
-    EXPECT_EQ(stepper.advance(x, t, t + 2), Status::ok);
-  }
-  return x;
-}
 template <template <class> class A, class Method>
 void expect_order_on_the_tether(Method const& method) {
   static auto const problem = erase_type(TetherCapture(Choice{}).field<Quad, A, true>());
-  static auto const exact = tether_after_6_s(Gauss<8>{}, *problem, 0.125);
-  auto const error = [&](double h) { return angle_apart<A<Quad>>(tether_after_6_s(method, *problem, h), exact); };
+  static auto const exact = test::tether_after_6_s(Gauss<8>{}, *problem, 0.125);
+  auto const error = [&](double h) { return angle_apart<A<Quad>>(test::tether_after_6_s(method, *problem, h), exact); };
   EXPECT_NEAR(order_of(error(1. / 16), error(1. / 32)), Method::info.order, 0.1)
       << Method::info.name << " on " << A<Quad>::name;
 }

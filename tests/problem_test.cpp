@@ -9,17 +9,15 @@
 #include "integrators/gauss.hpp"
 #include "integrators/runge_kutta.hpp"
 #include "problems/catalog.hpp"
+#include "tests/chosen_problem.hpp"
 #include "tests/random_numbers.hpp"
 
 namespace polhode {
 namespace {
 
+using test::expect_near;
 using test::in;
 using test::Random;
-
-void expect_near(Vec3<double> const& a, Vec3<double> const& b, double tolerance, std::string const& what = "") {
-  EXPECT_LE(distance<double>(a, b), tolerance) << what << ": (" << a.x << ", " << a.y << ", " << a.z << ")";
-}
 
 // ---- Euler's equation -----------------------------------------------------------------------------------------------
 

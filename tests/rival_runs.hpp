@@ -8,6 +8,7 @@
 #include "bench/run_loop.hpp"
 #include "integrators/gauss.hpp"
 #include "problems/definition.hpp"
+#include "problems/pd_slew.hpp"
 
 namespace polhode::test {
 
@@ -70,6 +71,24 @@ double error_of(Pair<Quat<S>, Vec3<S>> const& x, Pair<Quat<T>, Vec3<T>> const& r
   Vec3<Quad> const rate{Quad(x.second.x), Quad(x.second.y), Quad(x.second.z)};
   Quad const angle = angle_between(quad(x.first), quad(reference.first));
   return double(max_of(angle, distance<Quad>(rate, reference.second)));
+}
+
+/// What 60 s of the slew take in pieces of half a second, restarted at each or not.
+struct InPieces {
+  Work work;
+  std::int64_t evaluations;
+};
+template <class Method>
+InPieces slew_in_pieces(bool restart_at_each) {
+  auto const problem = erase<double, FlatQuaternion>(PdSlew(Choice{}));
+  auto stepper = Method{}.bind(*problem, Adaptive{1e-8, 1e-10}, NormPolicy::none);
+  auto x = problem->initial();
+  for (int i = 0; i < 120; ++i) {
+    if (restart_at_each) stepper.restart();
+    EXPECT_EQ(stepper.advance(x, 0.5 * i, 0.5 * (i + 1)), Status::ok);
+  }
+  EXPECT_LT(double(angle_between(x.first, Quat<double>{0, 0, 0, 1})), 0.0065) << "at the target";
+  return {stepper.work(), problem->evaluations()};
 }
 
 /// Stiffer and faster than by default, the scalar part above .7 for 4 s: the order of a high-order method shows before

@@ -3,6 +3,7 @@
 
 #include "integrators/catalog.hpp"
 #include "problems/catalog.hpp"
+#include "tests/rival_runs.hpp"
 #include "tests/runs.hpp"
 
 namespace polhode {
@@ -64,24 +65,12 @@ TEST_P(AdaptiveRival, TighterTolerancesTakeMoreStepsAndErrLess) {
 
 // ---- Memory between advances ----------------------------------------------------------------------------------------
 
-/// Evaluations of 60 s of the slew in pieces of 0.5 s, restarted at each or not.
-template <class Method>
-std::int64_t evaluations_of(bool restart_at_each) {
-  auto const problem = erase<double, FlatQuaternion>(PdSlew(Choice{}));
-  auto stepper = Method{}.bind(*problem, Adaptive{1e-8, 1e-10}, NormPolicy::none);
-  auto x = problem->initial();
-  for (int i = 0; i < 120; ++i) {
-    if (restart_at_each) stepper.restart();
-    EXPECT_EQ(stepper.advance(x, 0.5 * i, 0.5 * (i + 1)), Status::ok);
-  }
-  EXPECT_LT(double(angle_between(x.first, Quat<double>{0, 0, 0, 1})), 0.0065);  // at the target
-  return problem->evaluations();
-}
-
 #ifdef POLHODE_HAS_SUNDIALS
 TEST(Cvode, KeepsItsHistoryBetweenAdvances) {
-  EXPECT_GT(evaluations_of<Cvode<false>>(true), 2 * evaluations_of<Cvode<false>>(false));
-  EXPECT_GT(evaluations_of<Cvode<true>>(true), 2 * evaluations_of<Cvode<true>>(false));
+  EXPECT_GT(test::slew_in_pieces<Cvode<false>>(true).evaluations,
+            2 * test::slew_in_pieces<Cvode<false>>(false).evaluations);
+  EXPECT_GT(test::slew_in_pieces<Cvode<true>>(true).evaluations,
+            2 * test::slew_in_pieces<Cvode<true>>(false).evaluations);
 }
 
 TEST(Cvode, ARestartReadsTheStateAgain) {

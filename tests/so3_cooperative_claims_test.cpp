@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "problems/so3_cooperative.hpp"
+#include "tests/chosen_problem.hpp"
 #include "tests/swarm_runs.hpp"
 
 namespace polhode {
@@ -10,14 +11,12 @@ namespace {
 
 using test::claims_of;
 using test::history_of;
+using test::Numbers;
 using test::run_swarm;
-using Words = std::set<std::string>;
-using Numbers = std::map<std::string, std::vector<double>>;
+using test::Words;
 using Claims = std::map<std::string, ClaimResult>;
 
-So3Cooperative chosen(Words const& words, Numbers const& set = {}) {
-  return So3Cooperative(Choice{.words = words, .set = set});
-}
+constexpr test::Chooser<So3Cooperative> chosen;
 template <template <class> class A, class Method>
 Claims claims(Words const& words, Numbers const& set, Method const& method, double h, double t_end = 20) {
   auto const definition = chosen(words, set);

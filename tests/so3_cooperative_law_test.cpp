@@ -5,6 +5,7 @@
 
 #include "problems/dual.hpp"
 #include "problems/so3_cooperative.hpp"
+#include "tests/chosen_problem.hpp"
 #include "tests/random_numbers.hpp"
 
 namespace polhode {
@@ -13,21 +14,13 @@ namespace {
 using test::in;
 using test::Random;
 using D1 = Dual<1>;
-using Real3 = Vec3<double>;
-using Words = std::set<std::string>;
-using Numbers = std::map<std::string, std::vector<double>>;
+using test::expect_near;
+using test::Numbers;
+using test::Real3;
+using test::Words;
 using Rates = Many<Pair<Real3, Real3>, dynamic>;
 
-So3Cooperative chosen(Words const& words, Numbers const& set = {}) {
-  return So3Cooperative(Choice{.words = words, .set = set});
-}
-template <template <class> class A, class S = double>
-auto field_of(Words const& words, Numbers const& set = {}) {
-  return chosen(words, set).field<S, A, true>();
-}
-void expect_near(Real3 const& a, Real3 const& b, double tolerance, std::string const& what = "") {
-  EXPECT_LE(distance<double>(a, b), tolerance) << what << ": (" << a.x << ", " << a.y << ", " << a.z << ")";
-}
+constexpr test::Chooser<So3Cooperative> chosen;
 /// v as it moves with velocity `rate`.
 Vec3<D1> moving(Real3 const& v, Real3 const& rate) {
   D1 s(0.0);
@@ -148,7 +141,7 @@ TEST(CooperativeCommand, DerivativesByDualNumbers) {
 /// |v1| >= |a - b| and |v1 x v2| >= (a - b)^2 of two weights: .19 / .61 for craft 4, printed graph.
 TEST(CooperativeCommand, CannotDegenerateOnThePrintedGraph) {
   Random random(3);
-  auto const field = field_of<FlatRotation>({});
+  auto const field = chosen.field<FlatRotation>({});
   double const bound = 0.19 / 0.61;
   EXPECT_NEAR(bound, 0.3115, 5e-5);
   EXPECT_NEAR(bound * bound, 0.097, 5e-5);
@@ -271,8 +264,8 @@ TEST(CooperativeClosure, BySolvingForAllAccelerations) {
   };
   for (Kind const& kind : {Kind{{}, far}, Kind{{"near"}, near}, Kind{{"method2"}, quaternion}, Kind{{"method3"}, mrp}})
     for (int trial = 0; trial < 20; ++trial) {
-      auto const field = field_of<FlatRotation>(kind.words);
-      auto const dual = field_of<FlatRotation, D1>(kind.words);
+      auto const field = chosen.field<FlatRotation>(kind.words);
+      auto const dual = chosen.field<FlatRotation, D1>(kind.words);
       bool const resting = trial < 10;
       auto const x = random_state(random, field.initial(), resting ? 0 : 0.5);
       Rates v(5);
@@ -329,7 +322,7 @@ double radius(Eigen::MatrixXd const& m) {
 
 TEST(CooperativeClosure, AFixedPointWouldDiverge) {
   Random random(7);
-  auto const field = field_of<FlatRotation>({});
+  auto const field = chosen.field<FlatRotation>({});
   double most = 0;
   for (int trial = 0; trial < 4000; ++trial)
     most = std::max(most, radius(coupling(field, random_state(random, field.initial(), 0))));
@@ -340,7 +333,7 @@ TEST(CooperativeClosure, AFixedPointWouldDiverge) {
   EXPECT_NEAR(std::fabs((Eigen::MatrixXd::Identity(15, 15) - coupling(field, together)).determinant()), 0, 1e-14)
       << "rho = 1 has no solution";
   EXPECT_NEAR(radius(coupling(field, field.initial())), 1, 1e-3) << "EX1: sweeps would do";
-  auto const large = field_of<FlatRotation>({"ex2"});
+  auto const large = chosen.field<FlatRotation>({"ex2"});
   EXPECT_NEAR(radius(coupling(large, large.initial())), 1.242, 1e-3);
 }
 

@@ -2,10 +2,10 @@
 /// formulation, the inertia, orders, drift, the switch of surfaces.
 #include <gtest/gtest.h>
 
-#include "bench/allocations.hpp"
 #include "integrators/taylor.hpp"
 #include "problems/dual.hpp"
 #include "problems/so3_cooperative.hpp"
+#include "tests/chosen_problem.hpp"
 #include "tests/random_numbers.hpp"
 #include "tests/swarm_runs.hpp"
 
@@ -13,28 +13,20 @@ namespace polhode {
 namespace {
 
 using test::columns_of;
+using test::expect_near;
+using test::Numbers;
+using test::Real3;
 using test::run_swarm;
-using Real3 = Vec3<double>;
-using Words = std::set<std::string>;
-using Numbers = std::map<std::string, std::vector<double>>;
+using test::Words;
 using Rates = Many<Pair<Real3, Real3>, dynamic>;
 
-So3Cooperative chosen(Words const& words, Numbers const& set = {}) {
-  return So3Cooperative(Choice{.words = words, .set = set});
-}
-template <template <class> class A, class S = double>
-auto field_of(Words const& words, Numbers const& set = {}) {
-  return chosen(words, set).field<S, A, true>();
-}
-void expect_near(Real3 const& a, Real3 const& b, double tolerance, std::string const& what = "") {
-  EXPECT_LE(distance<double>(a, b), tolerance) << what << ": (" << a.x << ", " << a.y << ", " << a.z << ")";
-}
+constexpr test::Chooser<So3Cooperative> chosen;
 constexpr double degree = BodyParameters::degree;
 
 // ---- Our reference values -------------------------------------------------------------------------------------------
 
 TEST(So3Reference, CommandAnglesAndAccelerationsAtTheStart) {
-  auto const field = field_of<S3>({});
+  auto const field = chosen.field<S3>({});
   auto const x = field.initial();
   auto const R = field.rotations(x);
   Quat<double> const q = quaternion(field.command(1, x, R).attitude);
@@ -46,7 +38,7 @@ TEST(So3Reference, CommandAnglesAndAccelerationsAtTheStart) {
     EXPECT_NEAR(length(field.law.virtual_control(CooperativeSurface::far, e).s1) / degree, angles[i], 5.1e-10);
   }
   expect_near(field.accelerations(x)[1], {-.522367404647, .131311849546, .726710937725}, 5.1e-13);
-  auto const alone = field_of<S3>({}, {{"rho", {0}}});
+  auto const alone = chosen.field<S3>({}, {{"rho", {0}}});
   expect_near(alone.accelerations(x)[1], {-1.147841989375, -.146309161175, 1.296963627018}, 5.1e-13);
 }
 
@@ -68,9 +60,9 @@ TEST(So3Reference, StateAt5Seconds) {
 
 /// The solution from the start to t by power series, on flat quaternions: components in storage order.
 std::vector<Quad> by_series(Words const& words, Numbers const& set, double t_end, double tolerance) {
-  auto const field = field_of<FlatQuaternion, Jet<Quad, 32>>(words, set);
+  auto const field = chosen.field<FlatQuaternion, Jet<Quad, 32>>(words, set);
   std::vector<Quad> state(35);
-  store(field_of<FlatQuaternion, Quad>(words, set).initial(), state.data());
+  store(chosen.field<FlatQuaternion, Quad>(words, set).initial(), state.data());
   Quad t(0.0);
   while (t < Quad(t_end)) {
     auto const segment = expand<Quad, 32>(field, state, t, Quad(Quad(t_end) - t), tolerance);
@@ -89,7 +81,7 @@ TEST(So3Reference, PowerSeriesAgreeWithGauss) {
   };
   for (Kind const& kind :
        {Kind{{}, {}}, Kind{{"near"}, {}}, Kind{{"method2"}, {{"delta", {0.01}}}}, Kind{{"method3"}, {}}}) {
-    auto const field = field_of<FlatQuaternion>(kind.words, kind.set);
+    auto const field = chosen.field<FlatQuaternion>(kind.words, kind.set);
     std::array<double, 35> exact;
     store(run_swarm(field, Gauss<4>{}, 5e-3, 0.1).x, exact.data());
     std::vector<Quad> const series = by_series(kind.words, kind.set, 0.1, 1e-17);
@@ -109,10 +101,10 @@ TEST(So3Reference, PowerSeriesTo5Seconds) {
 
 TEST(So3Field, IsOneForEveryScalar) {
   for (Words const& words : {Words{}, Words{"ex2"}, Words{"near"}, Words{"method2"}, Words{"method3"}}) {
-    auto const rates = field_of<FlatQuaternion>(words);
-    auto const quads = field_of<FlatQuaternion, Quad>(words);
-    auto const duals = field_of<FlatQuaternion, Dual<1>>(words);
-    auto const series = field_of<FlatQuaternion, Jet<Quad, 32>>(words);
+    auto const rates = chosen.field<FlatQuaternion>(words);
+    auto const quads = chosen.field<FlatQuaternion, Quad>(words);
+    auto const duals = chosen.field<FlatQuaternion, Dual<1>>(words);
+    auto const series = chosen.field<FlatQuaternion, Jet<Quad, 32>>(words);
     auto const a = rates.accelerations(rates.initial());
     auto const b = quads.accelerations(quads.initial());
     auto const c = duals.accelerations(duals.initial());
@@ -136,7 +128,7 @@ TEST(So3Field, IsTheSameInEveryFormulationAndForBothQuaternions) {
         omega[i] = random.vector(0.5);
       }
       auto const velocities = [&]<template <class> class A>(double sign) {
-        auto const field = field_of<A>(words);
+        auto const field = chosen.field<A>(words);
         auto x = field.initial();
         for (std::size_t i = 0; i < 5; ++i) x[int(i)] = {A<double>::from_attitude(scaled(sign, q[i])), omega[i]};
         Rates v(5);
@@ -156,20 +148,7 @@ TEST(So3Field, IsTheSameInEveryFormulationAndForBothQuaternions) {
 }
 
 TEST(So3Field, AllocatesNothing) {
-  auto field = field_of<S3>({"switching"});
-  auto const x = field.initial();
-  Rates v(5);
-  std::array<double, 5> g{};
-  std::array<double, 21> shown{};
-  auto const before = bench::allocations_of_this_thread();
-  field(0, x, v);
-  field.take_sides(0, x);
-  field.event_values(0, x, g);
-  field.cross(2);
-  field(0, x, v);
-  field.show(x, shown);
-  EXPECT_EQ(bench::allocations_of_this_thread() - before, 0);
-  EXPECT_TRUE(all_finite(v));
+  test::expect_no_allocations<5, 21>(chosen.field<S3>({"switching"}));
 }
 
 /// J Omega' = M - Omega x J Omega under the torques that the law commands for the same J.
@@ -204,9 +183,9 @@ TEST(So3Field, InertiaCancelsFromTheMotionAndNotFromTheTorque) {
     std::copy(J.begin(), J.end(), other.begin() + std::ptrdiff_t(6 * i));
   }
   Numbers const changed{{"inertia", other}};
-  auto const field = field_of<S3>({"ex2"});
+  auto const field = chosen.field<S3>({"ex2"});
   auto const exact = run_swarm(field, CommutatorFree4{}, 0.02, 5).x;
-  for (Plant const& plant : {Plant(field), Plant(field_of<S3>({"ex2"}, changed))}) {
+  for (Plant const& plant : {Plant(field), Plant(chosen.field<S3>({"ex2"}, changed))}) {
     auto const x = run_swarm(plant, CommutatorFree4{}, 0.02, 5).x;
     for (int i = 0; i < 5; ++i) {
       EXPECT_LE(angle_between(x[i].first, exact[i].first), 1e-13);
@@ -214,7 +193,7 @@ TEST(So3Field, InertiaCancelsFromTheMotionAndNotFromTheTorque) {
     }
   }
   auto const ours = columns_of(chosen({"ex2"}), field, exact);
-  auto const theirs = columns_of(chosen({"ex2"}), field_of<S3>({"ex2"}, changed), exact);
+  auto const theirs = columns_of(chosen({"ex2"}), chosen.field<S3>({"ex2"}, changed), exact);
   EXPECT_EQ(ours.at("q_a"), theirs.at("q_a"));
   EXPECT_GT(std::fabs(ours.at("b1.mx") - theirs.at("b1.mx")), 1e-3);
   auto const M = field.torques(exact);
@@ -231,8 +210,8 @@ template <template <class> class A, class Method>
 double error_at_5(Words const& words, Numbers const& set, Method const& method, double h) {
   static std::map<std::pair<Words, Numbers>, Point<RigidBodies<S3<double>>>> exact;
   auto& known = exact[{words, set}];
-  if (known.count() == 0) known = run_swarm(field_of<S3>(words, set), Gauss<4>{}, 0.00625, 5).x;
-  auto const x = run_swarm(field_of<A>(words, set), method, h, 5).x;
+  if (known.count() == 0) known = run_swarm(chosen.field<S3>(words, set), Gauss<4>{}, 0.00625, 5).x;
+  auto const x = run_swarm(chosen.field<A>(words, set), method, h, 5).x;
   double most = 0;
   for (int i = 0; i < 5; ++i)
     most = std::max({most, angle_between(A<double>::attitude(x[i].first), known[i].first),
@@ -267,10 +246,10 @@ TEST(So3Order, SwitchingKeepsItWhereEventsAreLocated) {
   for (double value : orders<S3>(switching, {}, CommutatorFree4{})) EXPECT_NEAR(value, 4, 0.1);
   for (double value : orders<FlatRotation>(switching, {}, Rk4{})) EXPECT_NEAR(value, 4, 0.1);
 
-  auto const exact = run_swarm(field_of<S3>(switching), Gauss<4>{}, 0.00625, 5).x;
+  auto const exact = run_swarm(chosen.field<S3>(switching), Gauss<4>{}, 0.00625, 5).x;
   double worst_order = 4, last = 0;
   for (double h : {0.1, 0.05, 0.025, 0.0125, 0.00625}) {
-    auto const field = field_of<S3>({"switching", "unlocated"});
+    auto const field = chosen.field<S3>({"switching", "unlocated"});
     auto stepper = CommutatorFree4{}.bind(field, FixedStep{h}, NormPolicy::none);
     auto x = field.initial();
     ASSERT_EQ(stepper.advance(x, 0, 5), Status::ok);
@@ -286,8 +265,8 @@ TEST(So3Switching, EveryCraftOnceAtTheSameTimesByTwoMethods) {
   auto const events = [](auto const& field, auto const& method, double h) {
     return run_swarm(field, method, h, 20).events;
   };
-  auto const cf4 = events(field_of<S3>({"switching"}), CommutatorFree4{}, 0.005);
-  auto const gauss = events(field_of<FlatQuaternion>({"switching"}), Gauss<3>{}, 0.02);
+  auto const cf4 = events(chosen.field<S3>({"switching"}), CommutatorFree4{}, 0.005);
+  auto const gauss = events(chosen.field<FlatQuaternion>({"switching"}), Gauss<3>{}, 0.02);
   std::vector<double> const known{1.0537066, 1.5761398, 1.6317325, 1.6479190, 1.7078978};
   ASSERT_EQ(cf4.size(), 5u);
   ASSERT_EQ(gauss.size(), 5u);
@@ -298,8 +277,8 @@ TEST(So3Switching, EveryCraftOnceAtTheSameTimesByTwoMethods) {
 }
 
 TEST(So3Switching, HeldSidesStayUntilTheyCross) {
-  auto field = field_of<SO3>({"switching"});
-  auto const far = field_of<SO3>({"far"}), near = field_of<SO3>({"near"});
+  auto field = chosen.field<SO3>({"switching"});
+  auto const far = chosen.field<SO3>({"far"}), near = chosen.field<SO3>({"near"});
   auto x = field.initial();
   field.take_sides(0, x);
   for (int i = 0; i < 5; ++i) x[i].first = matrix(exp_quaternion(Real3{0.03 * i, -0.01 * i * i, 0.01}));
@@ -318,7 +297,7 @@ TEST(So3Switching, HeldSidesStayUntilTheyCross) {
 
 TEST(So3Drift, OfNineNumbersFallsAsH4AndLieGroupsHaveNone) {
   auto const drift = []<template <class> class A>(auto const& method, double h) {
-    auto const field = field_of<A>({});
+    auto const field = chosen.field<A>({});
     double most = 0;
     run_swarm(field, method, h, 20, field.initial(), [&](double, auto const& x) {
       for (int i = 0; i < 5; ++i)

@@ -3,8 +3,10 @@
 /// integrators/events.hpp.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
+#include "bench/allocations.hpp"
 #include "integrators/gauss.hpp"
 #include "integrators/lie_group.hpp"
 #include "problems/definition.hpp"
@@ -131,6 +133,24 @@ std::string complaint(Choice const& choice) {
     return error.what();
   }
   return "";
+}
+
+/// The field of five craft, its events and its columns allocate nothing.   functions  switching functions, columns
+template <int functions, int columns, class P>
+void expect_no_allocations(P field) {
+  auto const x = field.initial();
+  Velocity<typename P::Space> v(5);
+  std::array<double, functions> g{};
+  std::array<double, columns> shown{};
+  auto const before = bench::allocations_of_this_thread();
+  field(0, x, v);
+  field.take_sides(0, x);
+  field.event_values(0, x, g);
+  field.cross(2);
+  field(0, x, v);
+  field.show(x, shown);
+  EXPECT_EQ(bench::allocations_of_this_thread() - before, 0);
+  EXPECT_TRUE(all_finite(v));
 }
 
 }  // namespace polhode::test

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "problems/dual.hpp"
+#include "tests/chosen_problem.hpp"
 #include "tests/random_numbers.hpp"
 #include "tests/swarm_runs.hpp"
 
@@ -12,6 +13,7 @@ namespace polhode {
 namespace {
 
 using test::columns_of;
+using test::expect_near;
 using test::Random;
 using test::run_swarm;
 using Words = std::set<std::string>;
@@ -22,9 +24,6 @@ Choice chosen(Words const& words) {
 template <template <class> class A>
 auto field_of(Words const& words) {
   return QuaternionSync(chosen(words)).field<double, A, true>();
-}
-void expect_near(Vec3<double> const& a, Vec3<double> const& b, double tolerance, std::string const& what = "") {
-  EXPECT_LE(distance<double>(a, b), tolerance) << what << ": (" << a.x << ", " << a.y << ", " << a.z << ")";
 }
 /// One entry for every method: quaternion by Gauss, s3 by a commutator-free method, mrp by Kutta's.
 struct Outcome {

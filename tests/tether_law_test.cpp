@@ -6,11 +6,13 @@
 #include <cmath>
 
 #include "problems/tether_capture.hpp"
+#include "tests/chosen_problem.hpp"
 #include "tests/random_numbers.hpp"
 
 namespace polhode {
 namespace {
 
+using test::expect_near;
 constexpr double degree = BodyParameters::degree;
 using Law = TetherController<double>;
 
@@ -36,10 +38,6 @@ Quat<double> turned(double angle) {
   return {0, std::sin(angle / 2), 0, std::cos(angle / 2)};
 }
 Vec3<double> const at_rest{0, 0, 0};
-
-void expect_near(Vec3<double> const& a, Vec3<double> const& b, double tolerance) {
-  EXPECT_LE(distance<double>(a, b), tolerance) << "(" << a.x << ", " << a.y << ", " << a.z << ")";
-}
 
 // ---- The first sample, computed here from the paper's equations -----------------------------------------------------
 
