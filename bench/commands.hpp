@@ -32,6 +32,8 @@ struct Faces {
 void add_commands(CLI::App& app, int& code, Faces const& faces);
 /// The verb list: what there is.
 void add_list(CLI::App& app);
+/// The verb run: a suite, on one process or on the ranks of an MPI job.
+void add_run(CLI::App& app, int& code);
 /// The verb simulate: one cell.
 void add_simulate(CLI::App& app, int& code, PlotTrajectory const& plot);
 /// The verb compare: two sets of records.

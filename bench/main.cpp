@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "bench/commands.hpp"
+#include "bench/ranks.hpp"
 #include "report/comparison.hpp"
 #include "report/report.hpp"
 #include "report/trajectory.hpp"
@@ -122,6 +123,11 @@ std::string explain(CLI::ParseError const& error, CLI::App const& app) {
   return text + " (see `polhode " + (chosen.empty() ? "" : verb.get_name() + " ") + "--help`)";
 }
 
+/// Of what is wrong with the command line, which all ranks of an MPI job have.
+int complain_once(std::string const& what) {
+  return bench::speaks_for_the_job() ? complain(exit_usage, what) : exit_ok;
+}
+
 int complain_of_output(std::error_code const& reason) {
   return complain(exit_bad_file, "standard output: cannot be written: " + reason.message());
 }
@@ -150,10 +156,12 @@ int main(int argc, char** argv) {
     return finish(code);
   } catch (CLI::Success const& success) {  // --help, --version
     return finish(app.exit(success));
+  } catch (bench::EndedElsewhere const&) {
+    return exit_ok;
   } catch (CLI::ParseError const& error) {
-    return complain(exit_usage, explain(error, app));
+    return complain_once(explain(error, app));
   } catch (bench::UsageError const& error) {
-    return complain(exit_usage, error.what());
+    return complain_once(error.what());
   } catch (bench::NothingSelected const& error) {
     return complain(exit_nothing_selected, error.what());
   } catch (std::bad_alloc const&) {

@@ -33,7 +33,7 @@ int size_by_launcher() {
 }  // namespace
 
 Ranks Ranks::of_this_job() {
-  if (!rank_by_launcher()) return Ranks(nullptr);
+  if (!launched()) return Ranks(nullptr);
   auto channel = mpi_channel();
   if (!channel && size_by_launcher() > 1) {
     if (!speaks_for_the_job()) throw EndedElsewhere();
@@ -41,6 +41,10 @@ Ranks Ranks::of_this_job() {
         "several ranks, but this polhode was built without MPI: build with -DPOLHODE_MPI=ON, or use `run --shard K/N`");
   }
   return Ranks(std::move(channel));
+}
+
+bool launched() {
+  return rank_by_launcher().has_value();
 }
 
 bool speaks_for_the_job() {

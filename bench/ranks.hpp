@@ -67,6 +67,8 @@ class Ranks {
   bool ended_together_ = false;  ///< an exception is known to all
 };
 
+/// Whether mpirun or srun started this process: its streams then go through theirs, whatever they seem to be.
+bool launched();
 /// Whether the launcher's environment says that this is the first rank, or there is no launcher: who may speak before
 /// the ranks have met.
 bool speaks_for_the_job();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <chrono>
@@ -10,16 +11,16 @@
 #include <cstring>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <thread>
 
 #include "bench/catalogue.hpp"
-#include "bench/cell_result.hpp"
-#include "bench/isolate.hpp"
+#include "bench/group.hpp"
 #include "bench/progress.hpp"
 #include "bench/provenance.hpp"
-#include "bench/timing.hpp"
 #include "results/file_name.hpp"
 #include "results/folder_lock.hpp"
 #include "results/store.hpp"
@@ -34,14 +35,6 @@ std::int64_t nanoseconds_now() {
   auto const now = std::chrono::system_clock::now().time_since_epoch();
   return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
 }
-
-struct Task {
-  PreparedCell prepared;
-  std::string id;
-  bool keep_history = false;
-  CellResult result;
-  bool died = false;  ///< its process did
-};
 
 std::string path_of(results::Cell const& cell) {
   return fmt::format("{}/{}/{}/{}/{}", cell.problem, cell.variant, cell.formulation, cell.integrator, cell.policy);
@@ -89,142 +82,16 @@ void take_shard(std::vector<Task>& tasks, RunOptions const& options) {
     throw NothingSelected(fmt::format("shard {}/{} of {} cells is empty", options.shard, options.shards, all));
 }
 
-/// Drops the cells that the folder already holds from this build.
-std::size_t skip_finished(std::vector<Task>& tasks, std::filesystem::path const& out, bool retry_failed) {
+/// The cells that a folder already holds from this build.
+std::set<std::string> finished(std::filesystem::path const& out, bool retry_failed) {
   results::Contents const contents = results::read(out);
   std::set<std::string> done;
   for (results::Record const& record : contents.records) {
     bool const good = record.status == results::Status::ok || record.status == results::Status::refused;
     if (record.build == build_id() && (good || !retry_failed)) done.insert(record.cell);
   }
-  return std::erase_if(tasks, [&](Task const& task) { return done.contains(task.id); });
+  return done;
 }
-
-/// Threads of the accuracy pass.
-int processors_of(RunOptions const& options) {
-  return options.threads > 0 ? options.threads : std::max(1, int(std::thread::hardware_concurrency()));
-}
-
-/// One problem with one choice: its cells share a reference, and are timed against each other.
-class Group {
- public:
-  Group(std::vector<Task*> tasks, References& references, results::Writer& writer, Progress& progress)
-      : tasks_(std::move(tasks)), references_(references), writer_(writer), progress_(progress) {}
-
-  void run(Timing const& timing, RunOptions const& options) {
-    results::Cell const& cell = tasks_.front()->prepared.cell;
-    std::string const name = cell.variant.empty() ? cell.problem : cell.problem + " " + cell.variant;
-    progress_.say(name + ": accuracy");
-    if (options.isolate)
-      measure_apart(options);
-    else
-      measure_all(options);
-    if (interrupted) return;
-    if (timing.enabled) {
-      progress_.say(name + ": timing");
-      time_all(timing);
-    }
-    if (interrupted) return;
-    for (Task* task : tasks_) {
-      for (results::Series const& series : task->result.series) writer_.series(series);
-      writer_.run(task->result.record);
-    }
-  }
-
- private:
-  void measure_all(RunOptions const& options) {
-    std::atomic<std::size_t> next = 0;
-    std::mutex mutex;
-    std::exception_ptr trouble;
-    auto const work = [&] {
-      for (std::size_t i = next++; i < tasks_.size() && !interrupted; i = next++) {
-        Task& task = *tasks_[i];
-        try {
-          {
-            std::lock_guard const lock(mutex);
-            if (trouble) return;
-            writer_.begin(task.id, build_id());
-          }
-          task.result = measured(task, options);
-        } catch (Interrupted const&) {
-          return;
-        } catch (...) {
-          std::lock_guard const lock(mutex);
-          trouble = std::current_exception();
-          return;
-        }
-        progress_.advance();
-      }
-    };
-    std::vector<std::thread> helpers;
-    for (int i = 1; i < processors_of(options); ++i) helpers.emplace_back(work);
-    work();
-    for (std::thread& helper : helpers) helper.join();
-    if (trouble) std::rethrow_exception(trouble);
-  }
-
-  CellResult measured(Task const& task, RunOptions const& options) const {
-    return result_of(measure(task.prepared, references_, build_id(), {options.timeout, &interrupted}),
-                     task.keep_history);
-  }
-
-  /// The same with a process for each cell. There is no other thread then, and the references are made before.
-  void measure_apart(RunOptions const& options) {
-    constexpr double grace = 5;  // [s]: who hears the time limit has ended by then
-    for (Task const* task : tasks_)
-      if (task->prepared.refusal.empty()) references_.of(task->prepared);
-    in_children(
-        tasks_.size(), processors_of(options), options.timeout > 0 ? options.timeout + grace : 0, interrupted,
-        [&](std::size_t i) { writer_.begin(tasks_[i]->id, build_id()); },
-        [&](std::size_t i) { return to_text(measured(*tasks_[i], options)); },
-        [&](std::size_t i, Ended const& ended) {
-          Task& task = *tasks_[i];
-          task.died = !ended.died.empty();
-          task.result =
-              task.died ? CellResult{.series = {}, .record = died(task, ended, options)} : cell_result_from(ended.text);
-          progress_.advance();
-        });
-  }
-  static results::Record died(Task const& task, Ended const& ended, RunOptions const& options) {
-    results::Record record;
-    record.cell = task.id;
-    record.build = build_id();
-    record.of = task.prepared.cell;
-    record.status = ended.late ? results::Status::timeout : results::Status::crashed;
-    record.reason = ended.late ? fmt::format("killed: no step ended within {:g} s of wall time", options.timeout)
-                               : "its process ended: " + ended.died;
-    return record;
-  }
-
-  void time_all(Timing const& timing) {
-    std::vector<TimedCell> cells;
-    std::vector<Task*> timed;
-    for (Task* task : tasks_) {
-      results::Cell const& cell = task->prepared.cell;
-      results::Status const status = task->result.record.status;
-      if (status != results::Status::ok && status != results::Status::inaccurate) {
-        progress_.advance();
-        continue;
-      }
-      cells.push_back(
-          {task->id, task->prepared.problem->timed(cell.formulation, cell.integrator, task->prepared.plan)});
-      timed.push_back(task);
-    }
-    double const part = 1.0 / timing.repetitions;
-    std::vector<TimedResult> const results = time_cells(cells, timing, interrupted, [&] { progress_.advance(part); });
-    for (std::size_t i = 0; i < timed.size(); ++i) {
-      results::Record& record = timed[i]->result.record;
-      record.cpu_time_s = results[i].cpu_time;
-      if (results[i].allocations && record.steps && *record.steps > 0)
-        record.allocations_per_step = double(*results[i].allocations) / double(*record.steps);
-    }
-  }
-
-  std::vector<Task*> tasks_;
-  References& references_;
-  results::Writer& writer_;
-  Progress& progress_;
-};
 
 /// A rough guess [s]: what a measured step, a reference and a timed cell take on a machine of today.
 double expected_time(std::vector<Task> const& tasks, Timing const& timing, int processors) {
@@ -241,14 +108,14 @@ double expected_time(std::vector<Task> const& tasks, Timing const& timing, int p
   return (accuracy + per_reference * double(subjects.size())) / processors + timed;
 }
 
-void say_what_would_run(std::vector<Task> const& tasks, Timing const& timing, RunOptions const& options) {
+void say_what_would_run(std::vector<Task> const& tasks, Timing const& timing, int processors) {
   for (Task const& task : tasks) {
     results::Cell const& cell = task.prepared.cell;
     std::string const control = cell.h ? fmt::format("h={:g}", *cell.h) : fmt::format("rtol={:g}", *cell.rtol);
     fmt::print("{} {} {}{}\n", task.id, path_of(cell), control,
                task.prepared.refusal.empty() ? "" : "  refused: " + task.prepared.refusal);
   }
-  int const seconds = int(std::lround(expected_time(tasks, timing, processors_of(options))));
+  int const seconds = int(std::lround(expected_time(tasks, timing, processors)));
   fmt::print("{} cells, about {} min {} s\n", tasks.size(), seconds / 60, seconds % 60);
 }
 
@@ -268,6 +135,184 @@ std::set<std::string> warnings_of(std::vector<Task> const& tasks) {
       warnings.insert(task.prepared.cell.problem + ": " + warning);
   return warnings;
 }
+
+/// What a rank tells the manager of a pack.
+std::string to_text(RunSummary const& part) {
+  return fmt::format("{} {} {} {}", part.ok, part.refused, part.failed, part.died);
+}
+void add(RunSummary& summary, std::string const& text) {
+  RunSummary part;
+  std::istringstream(text) >> part.ok >> part.refused >> part.failed >> part.died;
+  summary.ok += part.ok;
+  summary.refused += part.refused;
+  summary.failed += part.failed;
+  summary.died += part.died;
+}
+
+/// One run of a suite, as one rank sees it: all prepare the same cells, the manager keeps the folder, each writes a
+/// file of its own.
+class SuiteRun {
+ public:
+  SuiteRun(Suite const& suite, RunOptions const& options, Ranks& ranks)
+      : suite_(suite), options_(options), timing_(suite.timing), ranks_(ranks) {
+    int const processors = std::max(1, int(std::thread::hardware_concurrency()));
+    if (options_.threads == 0) options_.threads = ranks.alone() ? processors : 1;
+    // Ranks share a machine, or are on different ones: neither gives times that can be compared.
+    if (!ranks.alone()) timing_.enabled = false;
+  }
+
+  RunSummary run() {
+    ranks_.together([&] { prepare_cells(); });
+    if (options_.dry_run) {
+      if (ranks_.manager()) say_what_would_run(tasks_, timing_, ranks_.size() * options_.threads);
+      return summary_;
+    }
+    std::optional<results::FolderLock> lock;  // the manager's, for the job
+    take_over(ranks_.from_manager([&] { return prepare_folder(lock); }));
+    if (tasks_.empty()) return summary_;
+    if (ranks_.manager())
+      for (std::string const& warning : warnings_of(tasks_)) warn(warning);
+    run_packs();
+    summary_.interrupted = interrupted;
+    return summary_;
+  }
+
+ private:
+  /// The cells of the whole run.
+  void prepare_cells() {
+    if (options_.isolate && !ranks_.alone())
+      throw UsageError("--isolate is for one process; under mpirun a rank that dies ends the job, and a rerun goes on");
+    tasks_ = prepare_all(suite_, options_.filter);
+    take_shard(tasks_, options_);
+    summary_.cells = tasks_.size();
+    summary_.out = options_.out.empty() ? std::filesystem::path("polhode-results") / results::file_name_of(suite_.name)
+                                        : options_.out;
+  }
+
+  /// The manager's: locks the folder, writes what belongs to the suite. Returns when the run began, and a 1 or 0 for
+  /// each cell: whether it is left to do.
+  std::string prepare_folder(std::optional<results::FolderLock>& lock) {
+    std::filesystem::path const& out = summary_.out;
+    std::error_code error;
+    std::filesystem::create_directories(out, error);
+    if (error) throw results::StoreError(fmt::format("{}: {}", out.string(), error.message()));
+    bool const whole = options_.shards <= 1 || options_.fresh;
+    if (whole)
+      lock.emplace(out);
+    else
+      lock.emplace(out, options_.shard, options_.shards);
+    if (options_.fresh) forget(out);
+    std::set<std::string> const done = finished(out, options_.retry_failed);
+    std::string left;
+    for (Task const& task : tasks_) left += done.contains(task.id) ? '0' : '1';
+    if (left.find('1') != std::string::npos) {
+      write_suite(out / "suite.toml", suite_.text);
+      results::write_catalogue(out, catalogue_text());
+      copy_files_of_suite();
+    }
+    return fmt::format("{:020} {}", nanoseconds_now(), left);
+  }
+  static void forget(std::filesystem::path const& out) {
+    for (auto const& entry : std::filesystem::directory_iterator(out))
+      if (entry.path().extension() == ".jsonl") std::filesystem::remove(entry.path());
+    std::filesystem::remove(out / results::catalogue_file);
+  }
+  void copy_files_of_suite() const {
+    for (std::filesystem::path const& file : suite_.files) {
+      std::filesystem::path const copy = summary_.out / file.filename();
+      if (!std::filesystem::exists(copy) || !std::filesystem::equivalent(file, copy))
+        std::filesystem::copy_file(file, copy, std::filesystem::copy_options::overwrite_existing);
+    }
+  }
+  /// What the manager found: the same cells are left on all ranks.
+  void take_over(std::string const& found) {
+    auto const space = found.find(' ');
+    begun_ = found.substr(0, space);
+    std::size_t i = space + 1;
+    std::vector<Task> left;
+    for (Task& task : tasks_)
+      if (found.at(i++) == '1') left.push_back(std::move(task));
+    summary_.skipped = tasks_.size() - left.size();
+    tasks_ = std::move(left);
+  }
+
+  /// The groups. Several ranks get them in parts, small enough to keep all busy to the end.
+  std::vector<std::vector<Task*>> packed() {
+    std::vector<std::vector<Task*>> packs;
+    std::map<std::string, std::size_t> pack_of;  // by what its cells have in common
+    auto const ranks = std::size_t(ranks_.size());
+    constexpr std::size_t most = 16;  // what a rank that dies can lose
+    std::size_t const limit =
+        ranks_.alone() ? tasks_.size()
+                       : std::clamp<std::size_t>(tasks_.size() / (8 * ranks), 1, most) * std::size_t(options_.threads);
+    for (Task& task : tasks_) {
+      auto const [place, is_new] = pack_of.try_emplace(reference_subject(task.prepared.physics), packs.size());
+      if (!is_new && packs[place->second].size() >= limit) place->second = packs.size();
+      if (place->second == packs.size()) packs.emplace_back();
+      packs[place->second].push_back(&task);
+    }
+    return packs;
+  }
+
+  void run_packs() {
+    std::vector<std::vector<Task*>> const packs = packed();
+    References references(references_folder());
+    std::optional<results::Writer> writer;  // a rank that gets nothing to do leaves no file
+    // Alone, cells are shown as they end; of several ranks the manager shows what it hears of.
+    Progress cells(ranks_.alone() ? tasks_.size() * (timing_.enabled ? 2 : 1) : 0);
+    Progress heard(ranks_.alone() || !ranks_.manager() ? 0 : tasks_.size());
+    auto const work = [&](std::int64_t k) {
+      if (!writer) writer.emplace(file_of_records(), meta());
+      std::vector<Task*> const& pack = packs[std::size_t(k)];
+      Group(pack, {options_, timing_, references, *writer, cells, interrupted}).run();
+      return to_text(counted(pack));
+    };
+    auto const deliver = [&](std::int64_t k, std::string const& counts) {
+      add(summary_, counts);
+      heard.advance(double(packs[std::size_t(k)].size()));
+    };
+    ranks_.distribute(std::int64_t(packs.size()), work, deliver, &interrupted);
+  }
+
+  std::filesystem::path file_of_records() const {
+    std::string const who = ranks_.alone() ? std::to_string(getpid()) : fmt::format("rank{:05}", ranks_.rank());
+    return summary_.out / fmt::format("run-{}-{}.jsonl", begun_, who);
+  }
+  results::Meta meta() const {
+    results::Meta meta = provenance();
+    meta["suite"] = suite_.name;
+    meta["suite_hash"] = results::hash_of(suite_.text);
+    meta["reference_methods"] = "Taylor series and 8-stage Gauss, float128";
+    if (ranks_.alone()) return meta;
+    meta["rank"] = std::to_string(ranks_.rank());
+    meta["ranks"] = std::to_string(ranks_.size());
+    meta["ranks_on_node"] = std::to_string(ranks_.on_this_node());
+    meta["timing_valid"] = "false";
+    return meta;
+  }
+
+  /// Statuses of a pack that is on disk.
+  static RunSummary counted(std::vector<Task*> const& pack) {
+    RunSummary part;
+    for (Task* task : pack) {
+      results::Status const status = task->result.record.status;
+      part.ok += status == results::Status::ok;
+      part.refused += status == results::Status::refused;
+      part.failed += status != results::Status::ok && status != results::Status::refused;
+      part.died += task->died;
+      task->result = {};
+    }
+    return part;
+  }
+
+  Suite const& suite_;
+  RunOptions options_;
+  Timing timing_;
+  Ranks& ranks_;
+  std::vector<Task> tasks_;
+  std::string begun_;  ///< [ns] since 1970
+  RunSummary summary_;
+};
 
 }  // namespace
 
@@ -299,70 +344,8 @@ std::filesystem::path suite_file(std::string const& name_or_file) {
   throw UsageError(unknown("suite", name_or_file, suite_names()));
 }
 
-RunSummary run_suite(Suite const& suite, RunOptions const& options) {
-  std::vector<Task> tasks = prepare_all(suite, options.filter);
-  take_shard(tasks, options);
-  RunSummary summary;
-  summary.out =
-      options.out.empty() ? std::filesystem::path("polhode-results") / results::file_name_of(suite.name) : options.out;
-  summary.cells = tasks.size();
-  if (options.dry_run) {
-    say_what_would_run(tasks, suite.timing, options);
-    return summary;
-  }
-
-  std::error_code error;
-  std::filesystem::create_directories(summary.out, error);
-  if (error) throw results::StoreError(fmt::format("{}: {}", summary.out.string(), error.message()));
-  bool const alone = options.shards <= 1 || options.fresh;
-  results::FolderLock const lock =
-      alone ? results::FolderLock(summary.out) : results::FolderLock(summary.out, options.shard, options.shards);
-  if (options.fresh) {
-    for (auto const& entry : std::filesystem::directory_iterator(summary.out))
-      if (entry.path().extension() == ".jsonl") std::filesystem::remove(entry.path());
-    std::filesystem::remove(summary.out / results::catalogue_file);
-  }
-  summary.skipped = skip_finished(tasks, summary.out, options.retry_failed);
-  if (tasks.empty()) return summary;
-  write_suite(summary.out / "suite.toml", suite.text);
-  results::write_catalogue(summary.out, catalogue_text());
-  for (std::filesystem::path const& file : suite.files) {
-    std::filesystem::path const copy = summary.out / file.filename();
-    if (!std::filesystem::exists(copy) || !std::filesystem::equivalent(file, copy))
-      std::filesystem::copy_file(file, copy, std::filesystem::copy_options::overwrite_existing);
-  }
-
-  results::Meta meta = provenance();
-  meta["suite"] = suite.name;
-  meta["suite_hash"] = results::hash_of(suite.text);
-  meta["reference_methods"] = "Taylor series and 8-stage Gauss, float128";
-  results::Writer writer(summary.out / fmt::format("run-{:020}-{}.jsonl", nanoseconds_now(), getpid()), meta);
-
-  std::vector<std::string> order;
-  std::map<std::string, std::vector<Task*>> groups;
-  for (Task& task : tasks) {
-    std::string const subject = reference_subject(task.prepared.physics);
-    if (!groups.contains(subject)) order.push_back(subject);
-    groups[subject].push_back(&task);
-  }
-  for (std::string const& warning : warnings_of(tasks)) warn(warning);
-  References references(references_folder());
-  Progress progress(tasks.size() * (suite.timing.enabled ? 2 : 1));
-  for (std::string const& subject : order) {
-    if (interrupted) break;
-    Group(groups[subject], references, writer, progress).run(suite.timing, options);
-    if (interrupted) break;
-    for (Task* task : groups[subject]) {
-      results::Status const status = task->result.record.status;
-      summary.ok += status == results::Status::ok;
-      summary.refused += status == results::Status::refused;
-      summary.failed += status != results::Status::ok && status != results::Status::refused;
-      summary.died += task->died;
-      task->result = {};  // it is on disk
-    }
-  }
-  summary.interrupted = interrupted;
-  return summary;
+RunSummary run_suite(Suite const& suite, RunOptions const& options, Ranks& ranks) {
+  return SuiteRun(suite, options, ranks).run();
 }
 
 }  // namespace polhode::bench

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/ranks.hpp"
 #include "bench/suite.hpp"
 
 namespace polhode::bench {
@@ -23,7 +24,7 @@ struct RunOptions {
   bool dry_run = false;       ///< say what would run
   bool isolate = false;       ///< the accuracy pass of each cell in a process of its own
   double timeout = 60;        ///< per cell [s]
-  int threads = 0;            ///< of the accuracy pass; 0: one per processor
+  int threads = 0;            ///< of the accuracy pass; 0: one per processor, one in each of several ranks
   int shard = 1, shards = 1;  ///< which of how many parts to run
 };
 
@@ -39,8 +40,10 @@ std::vector<std::string> suite_names();
 /// The suite of that name among the built-in ones, or that file.
 std::filesystem::path suite_file(std::string const& name_or_file);
 
-/// Throws SuiteError, UsageError (bad filter), NothingSelected, results::StoreError, ReferenceError.
-RunSummary run_suite(Suite const& suite, RunOptions const& options);
+/// Every rank calls it; each writes a file of records of its own, and the manager's summary is that of all. Several
+/// ranks take no times. Throws SuiteError, UsageError (bad filter), NothingSelected, results::StoreError,
+/// ReferenceError; see Ranks.
+RunSummary run_suite(Suite const& suite, RunOptions const& options, Ranks& ranks);
 
 /// Tells the user on stderr; nothing if there is nothing to tell.
 void warn(std::string const& warning);

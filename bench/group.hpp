@@ -1,0 +1,55 @@
+#pragma once
+/// Cells that are run together: of one problem with one choice, or a part of them. They share a reference, and are
+/// timed against each other.
+#include <atomic>
+#include <string>
+#include <vector>
+
+#include "bench/cell.hpp"
+#include "bench/cell_result.hpp"
+#include "bench/isolate.hpp"
+#include "bench/progress.hpp"
+#include "bench/run.hpp"
+#include "bench/suite.hpp"
+#include "results/store.hpp"
+
+namespace polhode::bench {
+
+/// One cell of a run.
+struct Task {
+  PreparedCell prepared;
+  std::string id;
+  bool keep_history = false;
+  CellResult result;
+  bool died = false;  ///< its process did
+};
+
+/// What a group needs besides its cells.
+struct Surroundings {
+  RunOptions options;  ///< with its threads settled
+  Timing timing;
+  References& references;
+  results::Writer& writer;
+  Progress& progress;
+  std::atomic<bool> const& interrupted;
+};
+
+class Group {
+ public:
+  Group(std::vector<Task*> tasks, Surroundings const& around) : tasks_(std::move(tasks)), around_(around) {}
+  /// Measures all cells, times them if that is wanted, and records them, as they end up in their tasks; nothing is
+  /// recorded that was interrupted. Throws what the writer and the references throw.
+  void run();
+
+ private:
+  void measure_all();
+  void measure_apart();
+  CellResult measured(Task const& task) const;
+  results::Record died(Task const& task, Ended const& ended) const;
+  void time_all();
+
+  std::vector<Task*> tasks_;
+  Surroundings around_;
+};
+
+}  // namespace polhode::bench
