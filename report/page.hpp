@@ -25,6 +25,8 @@ nlohmann::json page_data(Facts const& facts);
 struct NamedSpin {
   std::string label;
   FreeSpin spin;
+  PrincipalAxes body;         ///< where the spin's axes are
+  bool has_products = false;  ///< the inertia is not diagonal: the axes are not those of the body
 };
 std::vector<NamedSpin> free_spins(Facts const& facts);
 

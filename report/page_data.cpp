@@ -270,12 +270,19 @@ Json spins_json(std::vector<NamedSpin> const& spins) {
     for (RateCurve const& curve : polhode_family(named.spin)) family.push_back(curve_json(curve));
     list.push_back({{"label", one_line(named.label)},
                     {"inertia", named.spin.inertia},
+                    {"axes", named.has_products ? Json(named.body.axes) : Json(nullptr)},
                     {"omega0", named.spin.omega0},
                     {"semi_axes", named.spin.semi_axes()},
                     {"own", curve_json(own_polhode(named.spin))},
                     {"family", std::move(family)}});
   }
   return list;
+}
+
+/// A parameter of several numbers, or the problem's own.
+std::vector<double> values_of(results::Cell const& cell, std::string const& name, Triple const& usual) {
+  auto const found = cell.set.find(name);
+  return found == cell.set.end() ? std::vector(usual.begin(), usual.end()) : found->second;
 }
 
 }  // namespace
@@ -291,17 +298,16 @@ std::vector<NamedSpin> free_spins(Facts const& facts) {
     auto const& c = instance.like();
     bool const torque_free = c.problem == "free_body" || (c.problem == "tether_capture" && has_word(c.variant, "free"));
     if (!torque_free) continue;
-    FreeSpin spin{usual_inertia, usual_omega0};
-    bool whole = true;
-    for (auto const& [name, into] : {std::pair{"inertia", &spin.inertia}, std::pair{"omega0", &spin.omega0}}) {
-      auto const found = c.set.find(name);
-      if (found == c.set.end()) continue;
-      whole = whole && found->second.size() == 3;
-      if (found->second.size() == 3) std::ranges::copy(found->second, into->begin());
-    }
-    whole = whole && std::ranges::all_of(spin.inertia, [](double j) { return j > 0 && std::isfinite(j); });
-    if (whole && std::isfinite(spin.energy_twice()) && spins.size() < most_spins && seen.insert(spin).second) {
-      spins.push_back({instance.label, spin});
+    auto const inertia = values_of(c, "inertia", usual_inertia), omega0 = values_of(c, "omega0", usual_omega0);
+    bool const diagonal = inertia.size() == 3;
+    if ((!diagonal && inertia.size() != 6) || omega0.size() != 3) continue;
+    std::array<double, 6> entries{};
+    std::ranges::copy(inertia, entries.begin());
+    PrincipalAxes const body = principal_axes(entries);
+    FreeSpin const spin{body.moments, body.components({omega0[0], omega0[1], omega0[2]})};
+    bool const sound = std::ranges::all_of(spin.inertia, [](double j) { return j > 0 && std::isfinite(j); });
+    if (sound && std::isfinite(spin.energy_twice()) && spins.size() < most_spins && seen.insert(spin).second) {
+      spins.push_back({instance.label, spin, body, !diagonal});
     }
   }
   return spins;

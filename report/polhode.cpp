@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <tuple>
+#include <utility>
 
 #include "report/render.hpp"
 
@@ -77,6 +79,32 @@ RateCurve outline(Triple const& a) {
 }
 
 }  // namespace
+
+Triple PrincipalAxes::components(Triple const& w) const {
+  return {dot(axes[0], w), dot(axes[1], w), dot(axes[2], w)};
+}
+
+PrincipalAxes principal_axes(std::array<double, 6> const& inertia) {
+  auto const& [xx, yy, zz, xy, xz, yz] = inertia;
+  std::array<Triple, 3> a{{{xx, xy, xz}, {xy, yy, yz}, {xz, yz, zz}}}, rows{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+  constexpr int sweeps = 12;  // converges quadratically: half as many do
+  for (int sweep = 0; sweep < sweeps; ++sweep) {
+    for (auto const& [p, q] : {std::pair{0U, 1U}, {0U, 2U}, {1U, 2U}}) {
+      if (a[p][q] == 0) continue;
+      // the smaller of the two rotations: axes stay near those of the body
+      double const tau = (a[q][q] - a[p][p]) / (2 * a[p][q]);
+      double const t = (tau < 0 ? -1 : 1) / (std::abs(tau) + std::hypot(1, tau)), c = 1 / std::hypot(1, t), s = t * c;
+      auto const turn = [&](double& x, double& y) { std::tie(x, y) = std::pair(c * x - s * y, s * x + c * y); };
+      for (std::size_t k = 0; k < 3; ++k) turn(a[k][p], a[k][q]);
+      for (std::size_t k = 0; k < 3; ++k) {
+        turn(a[p][k], a[q][k]);
+        turn(rows[p][k], rows[q][k]);
+      }
+      a[p][q] = a[q][p] = 0;
+    }
+  }
+  return {{a[0][0], a[1][1], a[2][2]}, rows};
+}
 
 double FreeSpin::energy_twice() const {
   double sum = 0;

@@ -11,10 +11,22 @@ namespace polhode::report {
 
 using Triple = std::array<double, 3>;
 
+/// Principal moments of inertia and where their axes stand in the body: rows are unit vectors, right-handed, each near
+/// the body axis of its place if the inertia is nearly diagonal.
+struct PrincipalAxes {
+  Triple moments{};              ///< [kg m^2]
+  std::array<Triple, 3> axes{};  ///< a body vector w has the principal components axes[i] . w
+
+  Triple components(Triple const& w) const;
+};
+/// Of an inertia matrix with the entries xx yy zz xy xz yz [kg m^2], by cyclic Jacobi rotations.
+/// Source: Golub & Van Loan, Matrix Computations, sec. 8.5
+PrincipalAxes principal_axes(std::array<double, 6> const& inertia);
+
 /// A rigid body in principal axes and the rate that it starts with.
 struct FreeSpin {
   Triple inertia{};  ///< principal moments [kg m^2], positive
-  Triple omega0{};   ///< [rad/s, body]
+  Triple omega0{};   ///< [rad/s], along the principal axes
 
   double energy_twice() const;      ///< 2T [J]
   double momentum_squared() const;  ///< L^2 [N^2 m^2 s^2]

@@ -238,6 +238,10 @@ TEST(Polhode, NoneWhereEveryRateStays) {
   EXPECT_TRUE(polhode_svg({{1, 2, 3}, {0, 0, 0}}, "at rest").empty());
 }
 
+Triple problem_rate(FreeBody const& problem) {
+  return {problem.body().omega0[0], problem.body().omega0[1], problem.body().omega0[2]};
+}
+
 TEST(Polhode, BodiesAreThoseOfTheRecords) {
   Contents c;
   c.records.push_back(made("free_body", "", {"rk4", 4, 5e-3, 4, 8e-11}, 0.1));
@@ -250,13 +254,50 @@ TEST(Polhode, BodiesAreThoseOfTheRecords) {
   c.records.push_back(made("pd_slew", "plain", {"rk4", 4, 5e-3, 4, 8e-11}, 0.1));
   Facts const facts(c);
   auto const spins = free_spins(facts);
-  ASSERT_EQ(spins.size(), 2U) << "products of inertia have no principal axes here, and the slew has a torque";
+  ASSERT_EQ(spins.size(), 3U) << "the slew has a torque";
   FreeBody const problem{Choice{}};
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(spins[0].spin.inertia[i], problem.body().inertia[i]) << "the problem's own";
     EXPECT_DOUBLE_EQ(spins[0].spin.omega0[i], problem.body().omega0[i]);
-    EXPECT_EQ(spins[1].spin.inertia[i], static_cast<double>(i + 1));
+    EXPECT_EQ(spins[2].spin.inertia[i], static_cast<double>(i + 1));
   }
+  EXPECT_FALSE(spins[2].has_products);
+  EXPECT_TRUE(spins[1].has_products);
+  // In body axes and in principal ones the same energy and momentum.
+  Triple const w = problem_rate(problem);
+  Triple const momentum{w[0] + 0.1 * w[1], 0.1 * w[0] + 2 * w[1], 3 * w[2]};
+  EXPECT_NEAR(spins[1].spin.energy_twice(), momentum[0] * w[0] + momentum[1] * w[1] + momentum[2] * w[2], 1e-15);
+  EXPECT_NEAR(spins[1].spin.momentum_squared(),
+              momentum[0] * momentum[0] + momentum[1] * momentum[1] + momentum[2] * momentum[2], 1e-15);
+  Json const data = page_data(facts);
+  EXPECT_TRUE(data["spins"][2]["axes"].is_null());
+  EXPECT_EQ(data["spins"][1]["axes"].size(), 3U);
+}
+
+TEST(Polhode, PrincipalAxesDiagonalise) {
+  constexpr std::array<double, 6> general{100, 120, 110, 7, -11, 4}, nearly_equal{2, 2, 2, 1e-9, 0, 1e-9};
+  for (auto const& j : {general, nearly_equal, std::array<double, 6>{3, 1, 2, 0, 0, 0}}) {
+    double const matrix[3][3] = {{j[0], j[3], j[4]}, {j[3], j[1], j[5]}, {j[4], j[5], j[2]}};
+    PrincipalAxes const body = principal_axes(j);
+    auto const& a = body.axes;
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        double length = 0, moment = 0;
+        for (std::size_t m = 0; m < 3; ++m) {
+          length += a[i][m] * a[k][m];
+          for (std::size_t n = 0; n < 3; ++n) moment += a[i][m] * matrix[m][n] * a[k][n];
+        }
+        EXPECT_NEAR(length, i == k ? 1 : 0, 1e-14);
+        EXPECT_NEAR(moment, i == k ? body.moments[i] : 0, 1e-13 * j[1]);
+      }
+    }
+    double const volume = a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) -
+                          a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
+                          a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
+    EXPECT_NEAR(volume, 1, 1e-14) << "right-handed";
+  }
+  PrincipalAxes const own = principal_axes({3, 1, 2, 0, 0, 0});
+  EXPECT_EQ(own.moments, (Triple{3, 1, 2})) << "what is diagonal stays as it is";
 }
 
 }  // namespace

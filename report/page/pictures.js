@@ -227,6 +227,10 @@ const history = {
 };
 
 const RATES = ['wx', 'wy', 'wz'];
+/** Rates along the principal axes, where the body has others; axes: rows of unit vectors, or null. */
+function inAxes(axes, rates) {
+  return axes ? axes.map((axis) => rates[0].map((_, i) => axis.reduce((sum, a, k) => sum + a * rates[k][i], 0))) : rates;
+}
 const polhode = {
   id: 'x-polhodes', title: 'Polhodes on the inertia ellipsoid', space: true,
   about: 'Without torque the body rate stays on the ellipsoid of its energy and runs along a polhode: around the axis of the greatest or of the ' +
@@ -250,12 +254,14 @@ const polhode = {
     }
     if (spin && panel.run.value !== '') {
       const s = runs[panel.run.value];
-      lines.push({name: s.label, points: scaled(columnsOf(s, RATES)), colour: lookAt(4).colour, width: 2.5});
+      lines.push({name: s.label, points: scaled(inAxes(spin.axes, columnsOf(s, RATES))), colour: lookAt(4).colour, width: 2.5});
     }
-    drawSpace(panel, lines, spin ? spin.semi_axes.map((a) => a * factor) : [1, 1, 1], ['x', 'y', 'z'].map((axis) => `ω${axis} [${unit}]`));
+    const names = spin?.axes ? ['1', '2', '3'] : ['x', 'y', 'z'];
+    drawSpace(panel, lines, spin ? spin.semi_axes.map((a) => a * factor) : [1, 1, 1], names.map((axis) => `ω${axis} [${unit}]`));
+    const tuple = (values) => `(${values.map((v) => number(v)).join(', ')})`;
     panel.output.textContent = spin ? `Principal moments ${spin.inertia.map((j) => number(j)).join(', ')} kg m²; ω0 = ` +
-      `(${spin.omega0.map((w) => number(w * factor)).join(', ')}) ${unit}.` : '';
-    panel.csv = () => csvOf([['curve', 'n', ...['x', 'y', 'z'].map((axis) => `omega_${axis} [${unit}]`)],
+      `${tuple(spin.omega0.map((w) => w * factor))} ${unit}${spin.axes ? `, along the principal axes ${spin.axes.map(tuple).join(', ')} of the body` : ''}.` : '';
+    panel.csv = () => csvOf([['curve', 'n', ...names.map((axis) => `omega_${axis} [${unit}]`)],
       ...lines.flatMap((line, n) => line.points[0].map((_, i) => [line.name, n, ...line.points.map((p) => p[i])]))]);
     panel.again('');
   },
