@@ -5,6 +5,7 @@
 #include <map>
 
 #include "bench/cell.hpp"
+#include "bench/channel.hpp"
 #include "bench/doctor.hpp"
 #include "bench/provenance.hpp"
 #include "bench/run.hpp"
@@ -44,6 +45,8 @@ std::vector<Finding> what_is_built() {
 #else
   findings.push_back({"timed runs", "not built (POLHODE_RACES=OFF)", "nothing is timed"});
 #endif
+  std::string const mpi = mpi_version();
+  findings.push_back({"mpi", mpi.empty() ? "not built (POLHODE_MPI=OFF): one machine, or shards" : mpi, ""});
   findings.push_back(
       {"vectors",
        fmt::format("{} bytes everywhere; ensembles {}, {} bytes on this machine", register_bytes,

@@ -120,7 +120,10 @@ results::Meta provenance() {
   cpu_set_t cpus;
   if (sched_getaffinity(0, sizeof cpus, &cpus) == 0) note("cpus_available", std::to_string(CPU_COUNT(&cpus)));
   utsname system{};
-  if (uname(&system) == 0) note("kernel", fmt::format("{} {} {}", system.sysname, system.release, system.machine));
+  if (uname(&system) == 0) {
+    note("host", system.nodename);
+    note("kernel", fmt::format("{} {} {}", system.sysname, system.release, system.machine));
+  }
   return meta;
 }
 
