@@ -67,27 +67,48 @@ std::string unique_name(Cell const& cell, std::map<std::string, int> const& uses
   return uses.at(name) > 1 ? fmt::format("{}/t_end={}", name, cell.t_end) : name;
 }
 
-Json benchmark_of(Record const& record, std::string const& name, int index) {
+/// What all rows of a run begin with: Google Benchmark's keys, in its order.
+Json head_of(CpuTime const& time, std::string const& name, std::string const& run_name, int family) {
+  return {{"name", name},         {"family_index", family},  {"per_family_instance_index", 0},
+          {"run_name", run_name}, {"run_type", "iteration"}, {"repetitions", time.repetitions}};
+}
+
+/// Adds a time of a row [s], and what was counted.
+void add_time(Json& row, double seconds, Record const& record) {
   constexpr double ns = 1e9;
+  row["real_time"] = ns * seconds;
+  row["cpu_time"] = ns * seconds;
+  row["time_unit"] = "ns";
   Json const fields = to_json(record);
-  Json benchmark{{"name", name},
-                 {"family_index", index},
-                 {"per_family_instance_index", 0},
-                 {"run_name", name},
-                 {"run_type", "iteration"},
-                 {"repetitions", record.cpu_time_s->repetitions},
-                 {"repetition_index", 0},
-                 {"threads", 1},
-                 {"iterations", 1},
-                 {"real_time", ns * record.cpu_time_s->median},
-                 {"cpu_time", ns * record.cpu_time_s->median},
-                 {"time_unit", "ns"},
-                 {"cpu_time_low", ns * record.cpu_time_s->low},
-                 {"cpu_time_high", ns * record.cpu_time_s->high}};
   for (auto const* counter : {"steps", "evaluations", "norm_drift_max", "attitude_error_max"}) {
-    if (fields.at(counter).is_number()) benchmark[counter] = fields.at(counter);
+    if (fields.at(counter).is_number()) row[counter] = fields.at(counter);
   }
-  return benchmark;
+}
+
+/// A row for each repetition, and one for their median with its interval. Older files do not know their repetitions:
+/// there the median stands for a single one.
+void add_benchmark(Json& rows, Record const& record, std::string const& name, int family) {
+  CpuTime const& time = *record.cpu_time_s;
+  auto const samples = time.samples.empty() ? std::vector{time.median} : time.samples;
+  int repetition = 0;
+  for (double const seconds : samples) {
+    Json row = head_of(time, name, name, family);
+    row["repetition_index"] = repetition++;
+    row["threads"] = 1;
+    row["iterations"] = 1;
+    add_time(row, seconds, record);
+    rows.push_back(std::move(row));
+  }
+  Json row = head_of(time, name + "_median", name, family);
+  row["run_type"] = "aggregate";
+  row["threads"] = 1;
+  row["aggregate_name"] = "median";
+  row["aggregate_unit"] = "time";
+  row["iterations"] = samples.size();
+  add_time(row, time.median, record);
+  row["cpu_time_low"] = 1e9 * time.low;
+  row["cpu_time_high"] = 1e9 * time.high;
+  rows.push_back(std::move(row));
 }
 
 }  // namespace
@@ -118,9 +139,9 @@ std::string benchmark_json_text(Contents const& contents) {
   std::map<std::string, int> uses;
   for (Record const* record : timed) ++uses[run_name(record->of)];
   Json json{{"context", context_of(contents)}, {"benchmarks", Json::array()}};
+  int family = 0;
   for (Record const* record : timed) {
-    auto const index = static_cast<int>(json["benchmarks"].size());
-    json["benchmarks"].push_back(benchmark_of(*record, unique_name(record->of, uses), index));
+    add_benchmark(json["benchmarks"], *record, unique_name(record->of, uses), family++);
   }
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

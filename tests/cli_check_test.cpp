@@ -1,6 +1,7 @@
 // `check`, `export` and `merge` as a user meets them: what a wrong expectation says, golden columns, files for others.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
@@ -135,7 +136,9 @@ TEST_F(CliCheck, ExportsCsvAndBenchmarkJson) {
   Result const json = polhode(folder, "export results --format benchmark-json --out times.json");
   EXPECT_EQ(json.code, 0) << json.err;
   EXPECT_THAT(json.err, HasSubstr("1 of 4 records left out"));
-  EXPECT_EQ(nlohmann::json::parse(text_of(folder.path / "times.json")).at("benchmarks").size(), 3u);
+  auto const rows = nlohmann::json::parse(text_of(folder.path / "times.json")).at("benchmarks");
+  EXPECT_EQ(std::ranges::count(rows, "aggregate", [](auto const& row) { return row.at("run_type"); }), 3);
+  EXPECT_EQ(rows.size(), 18u) << "a row for each of five repetitions besides";
 }
 
 TEST_F(CliCheck, ExportSaysWhatIsWrong) {

@@ -28,7 +28,7 @@ using testing::HasSubstr;
 Record record_of(std::string const& integrator, double h, std::string const& build = "b") {
   Record record = test::made_up_record(integrator, h, build);
   record.norm_drift_max = 1.0 / 3 * 1e-15;
-  record.cpu_time_s = CpuTime{2.5e-5, 2.25e-5, 3e-5, 5};
+  record.cpu_time_s = CpuTime{2.5e-5, 2.25e-5, 3e-5, 5, {2.5e-5, 2.25e-5, 3e-5, 2.625e-5, 2.375e-5}};
   return record;
 }
 
@@ -102,16 +102,40 @@ TEST(ExportBenchmark, HasWhatCompareReads) {
   Json const json = Json::parse(benchmark_json_text(contents_of({record_of("rk4", 0.1)})));
   EXPECT_EQ(json.at("context").at("date"), "2024-01-01T00:00:00Z");
   EXPECT_EQ(json.at("context").at("num_cpus"), 2);
-  Json const& benchmark = json.at("benchmarks").at(0);
-  EXPECT_EQ(benchmark.at("name"), "free_body//quaternion/rk4/none/h=0.1");
-  EXPECT_EQ(benchmark.at("run_name"), benchmark.at("name"));
-  EXPECT_EQ(benchmark.at("run_type"), "iteration");
-  EXPECT_EQ(benchmark.at("repetitions"), 5);
-  EXPECT_EQ(benchmark.at("time_unit"), "ns");
-  EXPECT_DOUBLE_EQ(benchmark.at("cpu_time").get<double>(), 25000);
-  EXPECT_DOUBLE_EQ(benchmark.at("real_time").get<double>(), 25000);
-  EXPECT_DOUBLE_EQ(benchmark.at("cpu_time_low").get<double>(), 22500);
-  EXPECT_EQ(benchmark.at("steps"), 500);
+  Json const& rows = json.at("benchmarks");
+  ASSERT_EQ(rows.size(), 6u) << "five repetitions and their median";
+  std::string const name = "free_body//quaternion/rk4/none/h=0.1";
+  double const samples[] = {25000, 22500, 30000, 26250, 23750};  // ns
+  for (std::size_t i = 0; i < 5; ++i) {
+    EXPECT_EQ(rows[i].at("name"), name);
+    EXPECT_EQ(rows[i].at("run_name"), name);
+    EXPECT_EQ(rows[i].at("run_type"), "iteration");
+    EXPECT_EQ(rows[i].at("repetitions"), 5);
+    EXPECT_EQ(rows[i].at("repetition_index"), i);
+    EXPECT_EQ(rows[i].at("time_unit"), "ns");
+    EXPECT_DOUBLE_EQ(rows[i].at("cpu_time").get<double>(), samples[i]);
+    EXPECT_DOUBLE_EQ(rows[i].at("real_time").get<double>(), samples[i]);
+    EXPECT_EQ(rows[i].at("steps"), 500);
+  }
+  Json const& median = rows[5];
+  EXPECT_EQ(median.at("name"), name + "_median");
+  EXPECT_EQ(median.at("run_name"), name);
+  EXPECT_EQ(median.at("run_type"), "aggregate");
+  EXPECT_EQ(median.at("aggregate_name"), "median");
+  EXPECT_FALSE(median.contains("repetition_index"));
+  EXPECT_DOUBLE_EQ(median.at("cpu_time").get<double>(), 25000);
+  EXPECT_DOUBLE_EQ(median.at("cpu_time_low").get<double>(), 22500);
+  EXPECT_DOUBLE_EQ(median.at("cpu_time_high").get<double>(), 30000);
+}
+
+TEST(ExportBenchmark, OlderFilesHaveTheMedianAlone) {
+  Record record = record_of("rk4", 0.1);
+  record.cpu_time_s->samples.clear();
+  Json const rows = Json::parse(benchmark_json_text(contents_of({record}))).at("benchmarks");
+  ASSERT_EQ(rows.size(), 2u);
+  EXPECT_EQ(rows[0].at("run_type"), "iteration");
+  EXPECT_DOUBLE_EQ(rows[0].at("cpu_time").get<double>(), 25000);
+  EXPECT_EQ(rows[1].at("run_type"), "aggregate");
 }
 
 TEST(ExportBenchmark, NamesAreUnique) {
@@ -134,7 +158,7 @@ TEST(ExportBenchmark, NamesAreUnique) {
   });
   std::set<std::string> names;
   Json const json = Json::parse(benchmark_json_text(contents_of(records)));
-  for (Json const& benchmark : json.at("benchmarks")) names.insert(benchmark.at("name").get<std::string>());
+  for (Json const& benchmark : json.at("benchmarks")) names.insert(benchmark.at("run_name").get<std::string>());
   std::string const common = "free_body//quaternion/rk4/";
   EXPECT_THAT(names, ElementsAre(common + "none/h=0.1/inertia=1,2,2.5", common + "none/h=0.1/seed=2",
                                  common + "none/h=0.1/t_end=50", common + "none/h=0.1/t_end=60",
@@ -145,7 +169,7 @@ TEST(ExportBenchmark, WhatWasNotTimedOrIsOlderIsLeftOut) {
   Record untimed = record_of("rk4", 0.2);
   untimed.cpu_time_s.reset();
   auto const contents = contents_of({record_of("rk4", 0.1), untimed, record_of("rk4", 0.1, "older")});
-  EXPECT_EQ(Json::parse(benchmark_json_text(contents)).at("benchmarks").size(), 1u);
+  EXPECT_EQ(Json::parse(benchmark_json_text(contents)).at("benchmarks").size(), 6u) << "one run";
   EXPECT_EQ(left_out_of_benchmarks(contents), 2u);
 }
 
