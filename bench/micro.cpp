@@ -1,17 +1,21 @@
 /// polhode-bench: what a step costs, side by side in one run. Google Benchmark with its own flags
-/// (--benchmark_filter=...); repetitions are interleaved at random, and the pairs' ratios are printed at the end.
-/// Absolute times are this machine's.
+/// (--benchmark_filter=...), and --out DIR; repetitions are interleaved at random, and the pairs' ratios are printed at
+/// the end. Absolute times are this machine's.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
-#include <boost/numeric/odeint/stepper/runge_kutta4_classic.hpp>
 #include <cstring>
-#include <map>
+#include <filesystem>
+#include <memory>
+#include <optional>
 
 #include "bench/cell.hpp"
 #include "bench/provenance.hpp"
 #include "bench/reference.hpp"
+#include "bench/speed/reporter.hpp"
 #include "bench/speed/speed.hpp"
+#include "problems/exact.hpp"
+#include "results/store.hpp"
 
 namespace {
 
@@ -24,35 +28,6 @@ constexpr double step_size = 0.01;  // [s]
 void solve_cost(benchmark::State& state, TimedSolve& solve, double steps) {
   for (auto _ : state) benchmark::DoNotOptimize(solve.solve());
   count_steps(state, steps);
-}
-
-/// What an Odeint user would write for the free body: a plain array and a lambda, nothing of ours.
-void plain_odeint_rk4(benchmark::State& state) {
-  using State = std::array<double, 7>;
-  auto const chosen = problem_named("free_body").choose({});
-  BodyParameters const& body = *chosen->body();
-  double const Jx = body.inertia[0], Jy = body.inertia[1], Jz = body.inertia[2];
-  double const kx = (Jy - Jz) / Jx, ky = (Jz - Jx) / Jy, kz = (Jx - Jy) / Jz;
-  auto const field = [=](State const& y, State& dy, double) {
-    double const p = .5 * y[4], q = .5 * y[5], r = .5 * y[6];
-    dy[0] = y[3] * p + y[1] * r - y[2] * q;
-    dy[1] = y[3] * q + y[2] * p - y[0] * r;
-    dy[2] = y[3] * r + y[0] * q - y[1] * p;
-    dy[3] = -(y[0] * p) - y[1] * q - y[2] * r;
-    dy[4] = kx * (y[5] * y[6]);
-    dy[5] = ky * (y[6] * y[4]);
-    dy[6] = kz * (y[4] * y[5]);
-  };
-  Quat<double> const q = body.attitude<double>();
-  Vec3<double> const w = body.rate<double>();
-  long const steps = std::lround(chosen->horizon() / step_size);
-  for (auto _ : state) {
-    State y{q.x, q.y, q.z, q.w, w.x, w.y, w.z};
-    boost::numeric::odeint::runge_kutta4_classic<State> stepper;
-    for (long i = 0; i < steps; ++i) stepper.do_step(field, y, double(i) * step_size, step_size);
-    benchmark::DoNotOptimize(y);
-  }
-  count_steps(state, double(steps));
 }
 
 std::vector<Comparison> const comparisons{
@@ -76,39 +51,6 @@ std::vector<Comparison> const comparisons{
     {"RK4 step, free body: its type forgotten at every solve / never", "step/free_body/quaternion/rk4",
      "twin/free_body/rk4/generic"}};
 
-/// What Google Benchmark prints in the format that was asked for, and the medians for the ratios.
-class Reporter final : public benchmark::BenchmarkReporter {
- public:
-  bool ReportContext(Context const& context) override { return printed_->ReportContext(context); }
-  void ReportRuns(std::vector<Run> const& runs) override {
-    printed_->ReportRuns(runs);
-    for (Run const& run : runs) {
-      if (run.run_type != Run::RT_Aggregate || run.aggregate_name != "median" || run.iterations <= 0) continue;
-      bool const by_the_wall = run.run_name.time_type.find("real_time") != std::string::npos;
-      median_[run.run_name.function_name] =
-          (by_the_wall ? run.real_accumulated_time : run.cpu_accumulated_time) / double(run.iterations);
-    }
-  }
-  void Finalize() override { printed_->Finalize(); }
-
-  /// To stdout below the table; to stderr if what stdout gets is for machines.
-  void print_ratios(std::vector<Comparison> const& all) const {
-    std::FILE* const out = dynamic_cast<benchmark::ConsoleReporter*>(printed_.get()) ? stdout : stderr;
-    bool first = true;
-    for (Comparison const& pair : all) {
-      auto const ours = median_.find(pair.ours), rival = median_.find(pair.rival);
-      if (ours == median_.end() || rival == median_.end()) continue;
-      if (first) fmt::print(out, "\nratios of median times in this run (below 1: the first is faster)\n");
-      first = false;
-      fmt::print(out, "{:<85} {:.3f}\n", pair.what, ours->second / rival->second);
-    }
-  }
-
- private:
-  std::unique_ptr<benchmark::BenchmarkReporter> printed_{benchmark::CreateDefaultDisplayReporter()};
-  std::map<std::string, double> median_;  ///< seconds per iteration
-};
-
 /// Short steps, so that a solve is a loop over them; those of a sampled problem divide its period.
 double step_of(ProblemEntry const& entry) {
   bool const sampled = entry.choose({})->sample_period() > 0;
@@ -116,7 +58,7 @@ double step_of(ProblemEntry const& entry) {
 }
 
 /// Every typed fixed-step method on every problem and formulation.
-void register_steps(std::vector<std::unique_ptr<TimedSolve>>& keep) {
+void register_steps() {
   for (ProblemEntry const* entry : all_problems())
     for (std::string_view formulation : entry->formulations())
       for (IntegratorWord const& word : vocabulary().integrators) {
@@ -128,26 +70,25 @@ void register_steps(std::vector<std::unique_ptr<TimedSolve>>& keep) {
         cell.h = step_of(*entry);
         PreparedCell const prepared = prepare(cell);
         if (!prepared.refusal.empty()) continue;
-        auto solve = prepared.problem->timed(formulation, word.name, prepared.plan);
+        std::shared_ptr<TimedSolve> const solve = prepared.problem->timed(formulation, word.name, prepared.plan);
         if (!solve) continue;
         double const steps = prepared.cell.t_end / *cell.h;
         std::string const name = fmt::format("step/{}/{}/{}", cell.problem, formulation, word.name);
-        benchmark::RegisterBenchmark(name.c_str(), [&solve = *solve, steps](benchmark::State& state) {
-          solve_cost(state, solve, steps);
+        benchmark::RegisterBenchmark(name.c_str(), [solve, steps](benchmark::State& state) {
+          solve_cost(state, *solve, steps);
         })->Unit(benchmark::kMicrosecond);
-        keep.push_back(std::move(solve));
       }
 }
 
-/// Networks of 100 to 10^5 craft, all over the same second, so many times that craft times steps is the same: equal
+/// Networks of 5 to 10^5 craft, all over the same second, so many times that craft times steps is the same: equal
 /// times are equal cost per craft and step. (Over longer horizons the smaller would be at rest most of the time, where
 /// Gauss needs three sweeps instead of twenty.)
-void register_networks(std::vector<std::unique_ptr<TimedSolve>>& keep) {
+void register_networks() {
   constexpr double h = 0.1;
   constexpr int steps = 10, most_craft = 100'000;
   for (auto const& [formulation, integrator] :
        {std::pair{"quaternion", "rk4"}, {"s3", "cf4"}, {"quaternion", "gauss2"}})
-    for (int const n : {100, 1000, 10'000, most_craft}) {
+    for (int const n : {5, 100, 1000, 10'000, most_craft}) {
       results::Cell cell;
       cell.problem = "quaternion_sync";
       cell.formulation = formulation;
@@ -156,14 +97,13 @@ void register_networks(std::vector<std::unique_ptr<TimedSolve>>& keep) {
       cell.t_end = steps * h;
       cell.set["n"] = {double(n)};
       PreparedCell const prepared = prepare(cell);
-      auto solve = prepared.problem->timed(formulation, integrator, prepared.plan);
+      std::shared_ptr<TimedSolve> const solve = prepared.problem->timed(formulation, integrator, prepared.plan);
       std::string const name = fmt::format("network/quaternion_sync/{}/{}/{}", formulation, integrator, n);
-      benchmark::RegisterBenchmark(name.c_str(), [&solve = *solve, n](benchmark::State& state) {
+      benchmark::RegisterBenchmark(name.c_str(), [solve, n](benchmark::State& state) {
         for (auto _ : state)
-          for (int solved = 0; solved < most_craft; solved += n) benchmark::DoNotOptimize(solve.solve());
+          for (int solved = 0; solved < most_craft; solved += n) benchmark::DoNotOptimize(solve->solve());
         count_steps(state, double(most_craft) * steps);
       })->Unit(benchmark::kMillisecond);
-      keep.push_back(std::move(solve));
     }
 }
 
@@ -178,16 +118,15 @@ results::Cell cell_of(std::string_view problem, std::string_view formulation, st
 }
 
 /// The free body's field behind a virtual call at every evaluation.
-void register_erased(std::vector<std::unique_ptr<TimedSolve>>& keep) {
+void register_erased() {
   using M = RigidBody<FlatQuaternion<double>>;
   PreparedCell const prepared = prepare(cell_of("free_body", "quaternion", "rk4", step_size));
   auto field = std::get<std::unique_ptr<Erased<M>>>(prepared.problem->in("quaternion"));
-  auto solve = method_named<M>("rk4").timed(std::move(field), prepared.plan);
+  std::shared_ptr<TimedSolve> const solve = method_named<M>("rk4").timed(std::move(field), prepared.plan);
   double const steps = prepared.cell.t_end / step_size;
-  benchmark::RegisterBenchmark("erased/free_body/quaternion/rk4/evaluation", [&solve = *solve, steps](auto& state) {
-    solve_cost(state, solve, steps);
+  benchmark::RegisterBenchmark("erased/free_body/quaternion/rk4/evaluation", [solve, steps](auto& state) {
+    solve_cost(state, *solve, steps);
   })->Unit(benchmark::kMicrosecond);
-  keep.push_back(std::move(solve));
 }
 
 /// What a changed free body costs before its first run: its reference by Taylor series, and the proof by Gauss.
@@ -203,6 +142,73 @@ void register_certification() {
   })->Unit(benchmark::kMillisecond);
 }
 
+/// The closed form of the free body: a value of it, at times that no two evaluations share, and what comes before the
+/// first.
+void register_closed_form() {
+  auto const made = [] {
+    BodyParameters const body;
+    auto const& J = body.inertia;
+    return ExactFreeBody<double>({J[0], J[1], J[2]}, body.attitude<double>(), body.rate<double>());
+  };
+  benchmark::RegisterBenchmark("exact/free_body/evaluation", [made](benchmark::State& state) {
+    constexpr int values = 1000;
+    auto motion = made();
+    for (auto _ : state) {
+      benchmark::DoNotOptimize(motion);
+      for (int i = 1; i <= values; ++i) benchmark::DoNotOptimize(motion.at(double(i)));
+    }
+    count_steps(state, values);
+  })->Unit(benchmark::kMicrosecond);
+  benchmark::RegisterBenchmark("exact/free_body/setup", [made](benchmark::State& state) {
+    for (auto _ : state) benchmark::DoNotOptimize(made());
+    count_steps(state, 1);
+  })->Unit(benchmark::kMicrosecond);
+}
+
+/// What this program reads itself; the rest is Google Benchmark's.
+struct Flags {
+  std::string out;
+  bool each_repetition = false;  ///< printed, beside median and deviation
+  std::vector<char*> others;
+};
+/// None if --out has no folder.
+std::optional<Flags> flags_of(int argc, char** argv) {
+  Flags flags;
+  std::string const brief = "--benchmark_report_aggregates_only";
+  for (int i = 0; i < argc; ++i) {
+    std::string const word = argv[i];
+    if (word == "--out") {
+      if (i + 1 == argc) return {};
+      flags.out = argv[++i];
+    } else if (word.starts_with("--out=")) {
+      flags.out = word.substr(6);
+    } else if (word.starts_with(brief)) {
+      std::string const value = word.size() > brief.size() ? word.substr(brief.size() + 1) : "true";
+      flags.each_repetition = value == "false" || value == "0" || value == "no";
+    } else {
+      flags.others.push_back(argv[i]);
+      continue;
+    }
+    if (word.starts_with("--out") && flags.out.empty()) return {};
+  }
+  return flags;
+}
+
+void print_help() {
+  fmt::print(
+      "polhode-bench [--out DIR] [--benchmark_...]\n\n"
+      "What steps, ensembles and networks cost, side by side in one run; absolute times are this machine's.\n\n"
+      "  --out DIR                      write DIR/{}, for `polhode report DIR`\n"
+      "  --version                      version, commit, compiler, libraries\n"
+      "  --benchmark_filter=REGEX       those whose names match\n"
+      "  --benchmark_list_tests         say which there are\n"
+      "  --benchmark_repetitions=N      9 unless given; --benchmark_min_time=SECONDS of each: 0.02\n"
+      "  --benchmark_report_aggregates_only=false   print each repetition, too\n"
+      "  --benchmark_format=console|json|csv        and all other flags of Google Benchmark\n\n"
+      "Exit codes: 0 ok, 2 usage, 3 the filter matches nothing, 5 DIR cannot be written.\n",
+      results::benchmarks_file);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -211,31 +217,48 @@ int main(int argc, char** argv) {
     fmt::print("{}", version_text());
     return 0;
   }
-  std::vector<char*> arguments(argv, argv + argc);
+  auto flags = flags_of(argc, argv);
+  if (!flags) {
+    std::fputs("polhode-bench: --out needs a folder\n", stderr);
+    return 2;
+  }
   // Before the user's own flags, so that these win.
   std::string interleave = "--benchmark_enable_random_interleaving=true", repeat = "--benchmark_repetitions=9",
-              brief = "--benchmark_report_aggregates_only=true", short_time = "--benchmark_min_time=0.02";
-  arguments.insert(arguments.begin() + 1, {interleave.data(), repeat.data(), brief.data(), short_time.data()});
-  int count = int(arguments.size());
-  benchmark::Initialize(&count, arguments.data());
-  if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 2;
+              short_time = "--benchmark_min_time=0.02";
+  flags->others.insert(flags->others.begin() + 1, {interleave.data(), repeat.data(), short_time.data()});
+  int count = int(flags->others.size());
+  benchmark::Initialize(&count, flags->others.data(), print_help);
+  if (benchmark::ReportUnrecognizedArguments(count, flags->others.data())) return 2;
 
-  std::vector<std::unique_ptr<TimedSolve>> keep;
-  register_steps(keep);
-  register_networks(keep);
-  benchmark::RegisterBenchmark("plain/free_body/odeint_rk4", plain_odeint_rk4)->Unit(benchmark::kMicrosecond);
-  register_erased(keep);
+  register_steps();
+  register_networks();
+  register_erased();
   register_certification();
+  register_closed_form();
   std::vector<Comparison> compared = comparisons;
   add_twins(compared);
   add_worst_cases();
   add_ensembles(compared);
   add_odeint_loops();
-  Reporter reporter;
+  results::Meta const meta = provenance();  // the load before we make it
+  std::error_code error;
+  if (!flags->out.empty()) std::filesystem::create_directories(flags->out, error);
+  if (error) {  // now, and not after minutes
+    std::fputs(fmt::format("polhode-bench: {}: {}\n", flags->out, error.message()).c_str(), stderr);
+    return 5;
+  }
+  Reporter reporter(flags->each_repetition);
   if (benchmark::RunSpecifiedBenchmarks(&reporter) == 0) {
     std::fputs("polhode-bench: --benchmark_filter matches nothing\n", stderr);
     return 3;
   }
   reporter.print_ratios(compared);
+  try {
+    auto const all = reporter.benchmarks();  // none if they were only listed
+    if (!flags->out.empty() && !all.empty()) results::write_benchmarks(flags->out, {meta, all});
+  } catch (results::StoreError const& error) {
+    std::fputs(fmt::format("polhode-bench: {}\n", error.what()).c_str(), stderr);
+    return 5;
+  }
   return 0;
 }

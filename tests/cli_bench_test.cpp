@@ -1,9 +1,14 @@
 /// polhode-bench as a script meets it.
 #include <gtest/gtest.h>
 
+#include <unistd.h>
+
 #include <cstdio>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+
+#include "results/benchmarks.hpp"
 
 namespace polhode {
 namespace {
@@ -37,6 +42,33 @@ TEST(CliBench, TheTableEndsWithTheRatios) {
   EXPECT_NE(printed.out.find("generic source / written by hand"), std::string::npos);
   EXPECT_NE(printed.out.find("ensemble / Odeint's loop"), std::string::npos);
 }
+TEST(CliBench, EveryRepetitionIsPrintedIfAskedFor) {
+  Printed const few = bench("--benchmark_format=json" + brief + "^twin/");
+  Printed const all = bench("--benchmark_format=json --benchmark_report_aggregates_only=false" + brief + "^twin/");
+  auto const count = [](Printed const& printed) { return nlohmann::json::parse(printed.out).at("benchmarks").size(); };
+  EXPECT_EQ(count(all), count(few) + 2 * 2) << "two benchmarks, two repetitions";
+}
+TEST(CliBench, TheFolderGetsWhatWasMeasured) {
+  std::filesystem::path const folder =
+      std::filesystem::path(testing::TempDir()) / ("bench out-" + std::to_string(::getpid()));
+  Printed const printed = bench("--out '" + folder.string() + "'" + brief + "^twin/");
+  ASSERT_EQ(printed.code, 0);
+  results::Benchmarks const read = results::read_benchmarks(folder);
+  ASSERT_EQ(read.all.size(), 2U);
+  EXPECT_TRUE(read.meta.contains("compiler"));
+  results::Benchmark const* generic = read.find("twin/free_body/rk4/generic");
+  ASSERT_NE(generic, nullptr);
+  EXPECT_EQ(generic->time.repetitions, 2);
+  EXPECT_EQ(generic->time.samples.size(), 2U);
+  EXPECT_NEAR(generic->counters.at("per_step"), generic->time.median / 5000, 1e-6 * generic->time.median);
+  std::filesystem::remove_all(folder);
+}
+TEST(CliBench, AFolderThatCannotBeIsAnError) {
+  EXPECT_EQ(bench("--out").code, 2);
+  EXPECT_EQ(bench("--out=").code, 2);
+  EXPECT_EQ(bench("--out /dev/null/x" + brief + "^twin/").code, 5);
+}
+
 TEST(CliBench, AFilterThatMatchesNothingIsSaidSo) {
   EXPECT_EQ(bench(brief + "no_such_benchmark").code, 3);
 }

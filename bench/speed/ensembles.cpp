@@ -8,10 +8,6 @@
 #include "integrators/runge_kutta.hpp"
 #include "problems/free_body.hpp"
 
-#ifdef __x86_64__
-#include <immintrin.h>
-#endif
-
 namespace polhode::bench {
 namespace {
 
@@ -47,35 +43,64 @@ auto sampled_slews() {
 
 using End = Pair<Quat<double>, Vec3<double>>;
 
+/// How an ensemble is run.
+struct Way {
+  std::int64_t steps_to_stop = 0;
+  int threads = 1;
+  Registers registers = widest_registers();
+  std::int64_t steps = ensemble_steps;
+};
+
 template <class T, class Method, class Make>
-std::vector<End> ends_of(Make const& make, std::int64_t steps_to_stop, int threads, Registers registers) {
+std::vector<End> ends_of(Make const& make, Way const& way) {
   std::vector<End> ends(ensemble_bodies);
   run_ensemble_on_threads<T>(
-      threads, Method{}, EnsembleRun{ensemble_h, ensemble_steps, steps_to_stop}, ensemble_bodies, make,
-      [&](std::int64_t k, End const& x, Status) { ends[std::size_t(k)] = x; }, NoEnsembleWatch{}, registers);
+      way.threads, Method{}, EnsembleRun{ensemble_h, way.steps, way.steps_to_stop}, ensemble_bodies, make,
+      [&](std::int64_t k, End const& x, Status) { ends[std::size_t(k)] = x; }, NoEnsembleWatch{}, way.registers);
   return ends;
 }
 
 template <class T, class Method, class Make>
-benchmark::internal::Benchmark* add(std::string const& name, Make const& make, std::int64_t steps_to_stop = 0,
-                                    int threads = 1, Registers registers = widest_registers()) {
+benchmark::internal::Benchmark* add(std::string const& name, Make const& make, Way const& way = {}) {
   return benchmark::RegisterBenchmark(("ensemble/" + name).c_str(),
                                       [=](benchmark::State& state) {
                                         std::vector<End> ends;
                                         for (auto _ : state) {
-                                          ends = ends_of<T, Method>(make, steps_to_stop, threads, registers);
+                                          ends = ends_of<T, Method>(make, way);
                                           benchmark::DoNotOptimize(ends.data());
                                         }
                                         if constexpr (std::same_as<T, float>) {
-                                          auto const exact = ends_of<double, Method>(make, steps_to_stop, 1, registers);
+                                          auto const exact = ends_of<double, Method>(make, way);
                                           double apart = 0;
                                           for (std::size_t k = 0; k < ends.size(); ++k)
                                             apart = std::max(apart, distance<double>(ends[k], exact[k]));
                                           state.counters["lost"] = apart;  // the greatest difference from double
                                         }
-                                        count_steps(state, body_steps);
+                                        count_steps(state, double(ensemble_bodies) * double(way.steps));
                                       })
       ->Unit(benchmark::kMillisecond);
+}
+
+/// One thread and two, by the wall clock; and what it takes to start the second and to wait for it, which a short run
+/// feels and a long one does not.
+void add_threads() {
+  constexpr std::int64_t long_run = 20 * ensemble_steps;
+  for (int const threads : {1, 2}) {
+    std::string const end = "threads_" + std::to_string(threads);
+    for (auto const& [name, steps] : {std::pair{"free_body/rk4_", ensemble_steps}, {"free_body/rk4_long_", long_run}})
+      add<double, Rk4>(name + end, free_bodies(), {.threads = threads, .steps = steps})
+          ->UseRealTime()
+          ->MeasureProcessCPUTime();
+  }
+  benchmark::RegisterBenchmark("ensemble/second_thread",
+                               [](benchmark::State& state) {
+                                 for (auto _ : state)
+                                   on_threads(2, 2, [](std::int64_t part) { benchmark::DoNotOptimize(part); });
+                                 count_steps(state, 1);
+                               })
+      ->UseRealTime()
+      ->MeasureProcessCPUTime()
+      ->Unit(benchmark::kMicrosecond);
 }
 
 // ---- What the arithmetic allows -------------------------------------------------------------------------------------
@@ -92,29 +117,31 @@ struct FusedPeak {
   static constexpr std::int64_t rounds = std::int64_t(body_steps) * multiplications_of_step / (bytes / 8) / chains;
 };
 #if defined(__x86_64__) && !defined(__SSE3__)
-[[gnu::noinline, gnu::target("arch=x86-64-v4")]] double fuse_avx512(std::int64_t rounds) {
-  __m512d x[12], m = _mm512_set1_pd(0.999), c = _mm512_set1_pd(1e-3);
+/// In lanes V of the registers that the caller is for.
+template <class V>
+__attribute__((always_inline)) inline double fuse(std::int64_t rounds) {
+  constexpr int chains = FusedPeak<int(sizeof(V))>::chains;
+  V const m = V{} + 0.999, c = V{} + 1e-3;
+  V x[chains];
 #pragma GCC unroll 12
-  for (int i = 0; i < 12; ++i) x[i] = _mm512_set1_pd(double(i));
+  for (int i = 0; i < chains; ++i) x[i] = V{} + double(i);
   for (std::int64_t k = 0; k < rounds; ++k)
 #pragma GCC unroll 12
-    for (int i = 0; i < 12; ++i) x[i] = _mm512_fmadd_pd(x[i], m, c);
-  __m512d sum = x[0];
+    for (V& one : x) one = one * m + c;
+  V sum = x[0];
 #pragma GCC unroll 12
-  for (int i = 1; i < 12; ++i) sum = _mm512_add_pd(sum, x[i]);
-  return _mm512_cvtsd_f64(sum);
+  for (int i = 1; i < chains; ++i) sum += x[i];
+  return sum[0];
 }
-[[gnu::noinline, gnu::target("arch=x86-64-v3")]] double fuse_avx2(std::int64_t rounds) {
-  __m256d x[12], m = _mm256_set1_pd(0.999), c = _mm256_set1_pd(1e-3);
-#pragma GCC unroll 12
-  for (int i = 0; i < 12; ++i) x[i] = _mm256_set1_pd(double(i));
-  for (std::int64_t k = 0; k < rounds; ++k)
-#pragma GCC unroll 12
-    for (int i = 0; i < 12; ++i) x[i] = _mm256_fmadd_pd(x[i], m, c);
-  __m256d sum = x[0];
-#pragma GCC unroll 12
-  for (int i = 1; i < 12; ++i) sum = _mm256_add_pd(sum, x[i]);
-  return _mm256_cvtsd_f64(sum);
+using Wide32 [[gnu::vector_size(32)]] = double;
+using Wide64 [[gnu::vector_size(64)]] = double;
+[[gnu::noinline, gnu::target("arch=x86-64-v3"), gnu::optimize("fp-contract=fast")]] double fuse_avx2(
+    std::int64_t rounds) {
+  return fuse<Wide32>(rounds);
+}
+[[gnu::noinline, gnu::target("arch=x86-64-v4"), gnu::optimize("fp-contract=fast")]] double fuse_avx512(
+    std::int64_t rounds) {
+  return fuse<Wide64>(rounds);
 }
 #endif
 
@@ -140,16 +167,13 @@ void add_ensembles(std::vector<Comparison>& pairs) {
   add<float, Rk4>("free_body/rk4_float", free_bodies());
   add<double, Rk4>("limited_slew/rk4", limited_slews());
   add<float, Rk4>("limited_slew/rk4_float", limited_slews());
-  add<double, Rk4>("limited_slew_sampled/rk4", sampled_slews(), 5);
+  add<double, Rk4>("limited_slew_sampled/rk4", sampled_slews(), {.steps_to_stop = 5});
   add<double, CommutatorFree4>("free_body_s3/cf4", free_bodies_on_s3());
-  for (int const threads : {1, 2})
-    add<double, Rk4>("free_body/rk4_threads_" + std::to_string(threads), free_bodies(), 0, threads)
-        ->UseRealTime()
-        ->MeasureProcessCPUTime();
+  add_threads();
   if (chooses_registers && widest_registers() != Registers::of_the_unit) {
-    add<double, Rk4>("free_body/rk4_of_the_unit", free_bodies(), 0, 1, Registers::of_the_unit);
+    add<double, Rk4>("free_body/rk4_of_the_unit", free_bodies(), {.registers = Registers::of_the_unit});
     if (widest_registers() == Registers::avx512)
-      add<double, Rk4>("free_body/rk4_avx2", free_bodies(), 0, 1, Registers::avx2);
+      add<double, Rk4>("free_body/rk4_avx2", free_bodies(), {.registers = Registers::avx2});
     benchmark::RegisterBenchmark("ensemble/fused_peak", fused_peak, widest_registers())->Unit(benchmark::kMillisecond);
   }
   auto const compare = [&](std::string const& what, std::string const& ours, std::string const& rival) {
@@ -163,7 +187,10 @@ void add_ensembles(std::vector<Comparison>& pairs) {
   compare("RK4, 4096 free bodies: float / double", "free_body/rk4_float", "free_body/rk4");
   compare("RK4, 4096 limited slews: float / double", "limited_slew/rk4_float", "limited_slew/rk4");
   compare("RK4, 4096 free bodies: 133 fused operations at the machine's peak / a step", "fused_peak", "free_body/rk4");
-  compare("RK4, 4096 free bodies, wall time: 2 threads / 1", "free_body/rk4_threads_2", "free_body/rk4_threads_1");
+  for (std::string const length : {"", "long_"})
+    compare(
+        "RK4, 4096 free bodies, wall time: 2 threads / 1, " + std::string(length.empty() ? "200" : "4000") + " steps",
+        "free_body/rk4_" + length + "threads_2", "free_body/rk4_" + length + "threads_1");
 }
 
 }  // namespace polhode::bench

@@ -1,6 +1,7 @@
 #pragma once
 /// A slew whose torque saturates: what the ensembles' benchmarks and tests run beside the free body. In speed it stands
 /// for all laws with limits: three selections in every evaluation.
+#include "bench/speed/ensemble_size.hpp"
 #include "problems/controllers/pd.hpp"
 #include "problems/rigid_body.hpp"
 
@@ -38,8 +39,8 @@ template <Scalar S, template <class> class A = FlatQuaternion, class Control = L
 auto limited_slew(BodyParameters const& body = {}) {
   using R = Real<S>;
   Control control;
-  control.law = {R(4.0), R(20.0)};
-  control.torque_max = R(3.0);
+  control.law = {R(limited_k_p), R(limited_k_d)};
+  control.torque_max = R(limited_torque_max);
   return controlled_body<S, A, true>(body, control);
 }
 
