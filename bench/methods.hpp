@@ -92,19 +92,9 @@ struct MethodOn {
 template <Space M, class Methods>
 std::vector<MethodOn<M>> methods_on();
 
-/// The whole catalogue on space M.
+/// The whole catalogue on space M, and behind it what this binary adds: from its catalogue_unit.cpp.
 template <Space M>
-std::vector<MethodOn<M>> const& all_methods_on() {
-  static std::vector<MethodOn<M>> const all = []<class... List>(Types<List...>) {
-    std::vector<MethodOn<M>> joined;
-    auto const append = [&](std::vector<MethodOn<M>> const& list) {
-      joined.insert(joined.end(), list.begin(), list.end());
-    };
-    (append(methods_on<M, List>()), ...);
-    return joined;
-  }(MethodLists{});
-  return all;
-}
+std::vector<MethodOn<M>> const& all_methods_on();
 
 /// The one of that name. Throws std::out_of_range.
 template <Space M>

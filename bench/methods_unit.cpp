@@ -32,6 +32,39 @@ Outcome solve(Erased<M>& problem, Plan const& plan, Watch<M>& watch) {
   });
 }
 
+// What an entry lacks is said in words, here, before anything of it is compiled that would stumble over it.
+
+/// The facts of a method.
+template <class I>
+concept Described = requires {
+  { I::info } -> std::same_as<MethodInfo const&>;
+};
+/// A method with a Frame and a Memory is driven by Fixed, which takes its steps.
+template <class I, class P, class M = typename P::Space, class S = typename M::Scalar>
+concept Stepping = requires(I const method, P const& p, S t, Real<S> h, Point<M> x, typename I::template Frame<M> frame,
+                            typename I::template Memory<M> memory) {
+  { method.step(p, t, h, x, frame, memory) } -> std::same_as<void>;
+};
+template <class I, class M>
+concept Framed = requires {
+  typename I::template Frame<M>;
+  typename I::template Memory<M>;
+};
+template <Space M, class Method>
+consteval void check_step() {
+  if constexpr (Framed<Method, M> && refusal<M>(Method::info.needs).empty())
+    static_assert(Stepping<Method, Erased<M>>,
+                  "Stepping: a method with Frame and Memory needs  void step(p, t, h, x, frame, memory) const");
+}
+template <class... Method>
+consteval bool check(Types<Method...>) {
+  static_assert((Described<Method> && ...), "Described: a method needs  static constexpr MethodInfo info{...}");
+  (check_step<RigidBody<FlatQuaternion<double>>, Method>(), ...);
+  (check_step<RigidBody<S3<double>>, Method>(), ...);
+  return true;
+}
+static_assert(check(POLHODE_METHODS{}));
+
 /// Spaces such that every method runs on one of them.
 using Probes = Types<RigidBody<FlatQuaternion<double>>, RigidBody<S3<double>>, MovingBody<FlatQuaternion<double>>,
                      MovingBody<S3<double>>, Attitudes<S3<double>>>;
@@ -55,7 +88,9 @@ MethodOn<M> method_on() {
     entry.fixed = entry.adaptive = true;  // asked in either way, it is refused with this reason
   }
   if constexpr (refusal<M>(Method::info.needs).empty() && Method::info.not_built.empty()) {
-    static_assert(IntegratorFor<Method, Erased<M>> || PowerSpace<M>, "a method that is not refused must bind");
+    static_assert(IntegratorFor<Method, Erased<M>> || PowerSpace<M>,
+                  "IntegratorFor: where info.needs does not refuse a space, bind(problem, FixedStep or Adaptive, "
+                  "NormPolicy) must give a stepper");
     if constexpr (IntegratorFor<Method, Erased<M>>) {
       entry.solve = solve<M, Method>;
       entry.timed = [](std::unique_ptr<Erased<M>> problem, Plan const& plan) {

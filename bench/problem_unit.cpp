@@ -10,7 +10,13 @@ namespace polhode::bench {
 namespace {
 
 using D = POLHODE_PROBLEM;
-static_assert(Definition<D>);
+// What it lacks is said in words, here, before anything of it is compiled that would stumble over it.
+using Field = decltype(std::declval<D const&>().template field<double, FlatQuaternion, true>());
+static_assert(Space<typename Field::Space>,
+              "Space: Space of what field() makes must be a space, such as RigidBody<A<S>>");
+static_assert(Problem<Field>,
+              "Problem: a field needs  initial() const  and  operator()(t, x) const -> Velocity<Space>");
+static_assert(Definition<D>, "Definition: a member of the problem is missing or of another type; see definition.hpp");
 
 class Chosen final : public ChosenProblem {
  public:
@@ -46,10 +52,8 @@ class Chosen final : public ChosenProblem {
   std::unique_ptr<TimedSolve> timed(std::string_view formulation, std::string_view integrator,
                                     Plan const& plan) const override {
 #ifdef POLHODE_RACED
-    if (is_principal(definition_) && is_plain(definition_)) {
-      auto own = timed_solve<D, RacedMethods>(definition_, formulation, integrator, plan);
-      return own ? std::move(own) : timed_solve<D, Rivals>(definition_, formulation, integrator, plan);
-    }
+    if (is_principal(definition_) && is_plain(definition_))
+      return raced_solve(definition_, formulation, integrator, plan);
 #endif
     return std::visit(
         [&]<Space M>(std::unique_ptr<Erased<M>> field) {

@@ -1,26 +1,16 @@
 #include "bench/problems.hpp"
-#include "problems/catalog.hpp"
 
 #include <stdexcept>
 
 namespace polhode::bench {
 namespace {
 
-template <class... D>
-std::vector<ProblemEntry const*> entries(Types<D...>) {
-  return {&problem_entry<D>()...};
-}
 template <class... F>
 std::vector<std::string_view> names(Types<F...>) {
   return {F::name...};
 }
 
 }  // namespace
-
-std::vector<ProblemEntry const*> const& all_problems() {
-  static std::vector<ProblemEntry const*> const list = entries(Problems{});
-  return list;
-}
 
 ProblemEntry const& problem_named(std::string_view name) {
   for (ProblemEntry const* entry : all_problems())

@@ -78,7 +78,7 @@ class ProblemEntry {
   virtual std::unique_ptr<ChosenProblem> choose(Choice const& choice) const = 0;
 };
 
-/// Every problem, in catalogue order.
+/// Every problem, in catalogue order, and behind them what this binary adds: from its catalogue_unit.cpp.
 std::vector<ProblemEntry const*> const& all_problems();
 /// The problem of that name. Throws std::out_of_range.
 ProblemEntry const& problem_named(std::string_view name);
@@ -117,11 +117,15 @@ template <Definition D>
 using TimedFormulationsOf = typename detail::TimedFormulationsOf<D>::type;
 
 /// Each problem's own translation units define these two; the second those of raced problems.
-/// Methods is RacedMethods or Rivals.
+/// Methods is one of RaceLists, or a list that a binary adds.
 template <Definition D>
 ProblemEntry const& problem_entry();
 template <Definition D, class Methods>
 std::unique_ptr<TimedSolve> timed_solve(D const& definition, std::string_view formulation, std::string_view integrator,
+                                        Plan const& plan);
+/// The same by whichever of these lists has the integrator: from the binary's catalogue_unit.cpp.
+template <Definition D>
+std::unique_ptr<TimedSolve> raced_solve(D const& definition, std::string_view formulation, std::string_view integrator,
                                         Plan const& plan);
 
 }  // namespace polhode::bench

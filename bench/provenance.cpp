@@ -3,6 +3,7 @@
 #include <benchmark/benchmark.h>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sched.h>
 #include <sys/utsname.h>
 
@@ -14,6 +15,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "bench/additions.hpp"
 #include "build_info.hpp"  // written by the build: version, commit, flags
 
 #ifdef POLHODE_HAS_SUNDIALS
@@ -74,7 +76,18 @@ std::filesystem::path data_folder(char const* inside_share, char const* inside_s
   if (char const* chosen = std::getenv("POLHODE_DATA")) return std::filesystem::path(chosen) / inside_share;
   auto const installed = executable().parent_path().parent_path() / "share" / "polhode" / inside_share;
   if (std::filesystem::is_directory(installed)) return installed;
+  if (!additions().data.empty()) return std::filesystem::path(additions().data) / inside_share;
   return std::filesystem::path(build_info::source_folder) / inside_source;
+}
+
+/// "integrators heun; problems damped_body": what this binary adds to Polhode's catalogues. Empty if nothing.
+std::string added() {
+  Additions const& all = additions();
+  std::string text;
+  if (!all.integrators.empty()) text = fmt::format("integrators {}", fmt::join(all.integrators, " "));
+  if (!all.problems.empty())
+    text += fmt::format("{}problems {}", text.empty() ? "" : "; ", fmt::join(all.problems, " "));
+  return text;
 }
 
 }  // namespace
@@ -86,6 +99,7 @@ std::string version() {
 std::string version_text() {
   std::string text = fmt::format("polhode {} ({}{})\n{}\n{}\n", build_info::version, build_info::commit,
                                  build_info::dirty ? ", modified" : "", build_info::compiler, libraries());
+  if (std::string const what = added(); !what.empty()) text += "added: " + what + "\n";
 #ifdef POLHODE_HAS_GSL
   text += "Licence: MIT for Polhode's own code; this binary links GSL and is therefore under GPL-3-or-later.\n";
 #else
@@ -117,6 +131,7 @@ results::Meta provenance() {
   note("cpu_governor", first_line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor"));
   note("load", first_line("/proc/loadavg"));
   note("virtualised", cpu_field("flags").find(" hypervisor") != std::string::npos ? "true" : "false");
+  note("added", added());
   cpu_set_t cpus;
   if (sched_getaffinity(0, sizeof cpus, &cpus) == 0) note("cpus_available", std::to_string(CPU_COUNT(&cpus)));
   utsname system{};

@@ -27,6 +27,12 @@ struct Join<Types<A...>, Types<B...>, List...> : Join<Types<A..., B...>, List...
 template <class... List>
 using Joined = typename detail::Join<List...>::type;
 
+/// T is in the list.
+template <class T, class... Listed>
+constexpr bool is_one_of(Types<Listed...>) {
+  return (std::same_as<T, Listed> || ...);
+}
+
 /// A formulation: an attitude space, as a type that a list can hold.
 template <template <class> class A>
 struct Formulation {

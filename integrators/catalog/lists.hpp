@@ -13,5 +13,7 @@ struct Rivals;
 using MethodLists = Types<ExplicitMethods, GaussMethods, GroupMethods, BodyMethods, Rivals>;
 /// Those of our own that are raced: see races.hpp.
 struct RacedMethods;
+/// The lists whose methods are raced.
+using RaceLists = Types<RacedMethods, Rivals>;
 
 }  // namespace polhode
