@@ -1,3 +1,4 @@
+#include "integrators/catalog/gauss.hpp"
 #include "tests/orders.hpp"
 #include "tests/symmetry.hpp"
 

@@ -1,5 +1,6 @@
 /// That the walks over the catalogue can fail: methods with one coefficient changed, or a step changed, and what the
 /// walks' own measurements make of them.
+#include "integrators/catalog.hpp"
 #include "tests/orders.hpp"
 #include "tests/quad_runs.hpp"
 #include "tests/symmetry.hpp"

@@ -63,7 +63,7 @@ std::vector<ToleranceProblem> problems_for(std::string_view formulation, std::st
 template <class F>
 void for_each_adaptive(F f) {
   for (IntegratorWord const& method : vocabulary().integrators)
-    if (method.adaptive && method.not_built.empty())
+    if (method.adaptive && method.not_built.empty() && test::is_walked("", method.name))
       for (std::string_view formulation : {"quaternion", "s3", "mrp"})
         for (ToleranceProblem const& problem : problems_for(formulation, method.name))
           if (bench::prepare(problem.cell.with_rtol(1e-6).cell).refusal.empty()) f(method, problem);
@@ -83,7 +83,7 @@ TEST(Tolerance, ErrorsAreProportionalToIt) {
     double const within = method.name == "arkode_erk8" ? 0.5 : 0.3;
     EXPECT_NEAR(*slope, 1, within) << text_of(problem.cell);
   });
-  EXPECT_GE(judged.size(), 20u);
+  EXPECT_GE(int(judged.size()), test::at_least(20));
   for (auto const& [name, times] : judged) EXPECT_GE(times, 1) << name << ": its steps are never its own";
 }
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <optional>
 
-#include "integrators/catalog.hpp"
+#include "integrators/gauss.hpp"
 #include "problems/free_body.hpp"
 #include "problems/pd_slew.hpp"
 #include "problems/tether_capture.hpp"

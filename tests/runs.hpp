@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "bench/additions.hpp"
 #include "bench/cell.hpp"
 
 namespace polhode::test {
@@ -65,6 +66,19 @@ inline std::vector<std::string> calm_choices(bench::ProblemWord const& problem) 
           bench::problem_named(problem.name).choose({.words = {word}, .set = {}, .step = problem.step})->pinned())
         choices.push_back(word);
   return choices;
+}
+
+/// A walk over the catalogues is for this pair: in Polhode's own tests for every one, in those of a binary that adds to
+/// the catalogues for pairs with something added. "" stands for any.
+inline bool is_walked(std::string_view problem, std::string_view integrator) {
+  bench::Additions const& added = bench::additions();
+  if (added.integrators.empty() && added.problems.empty()) return true;
+  return std::count(added.problems.begin(), added.problems.end(), problem) > 0 ||
+         std::count(added.integrators.begin(), added.integrators.end(), integrator) > 0;
+}
+/// How many of something a walk over the whole catalogue meets at least; nothing is known of what a binary adds.
+inline int at_least(int of_all) {
+  return is_walked("", "") ? of_all : 0;
 }
 
 inline CellUnderTest a_cell(std::string_view problem, std::string_view formulation, std::string_view integrator) {

@@ -5,7 +5,6 @@
 
 #include <optional>
 
-#include "integrators/catalog.hpp"
 #include "problems/coning.hpp"
 #include "tests/lie_group_runs.hpp"
 #include "tests/pinned_runs.hpp"
