@@ -256,8 +256,8 @@ int main(int argc, char** argv) {
   try {
     auto const all = reporter.benchmarks();  // none if they were only listed
     if (!flags->out.empty() && !all.empty()) results::write_benchmarks(flags->out, {meta, all});
-  } catch (results::StoreError const& error) {
-    std::fputs(fmt::format("polhode-bench: {}\n", error.what()).c_str(), stderr);
+  } catch (results::StoreError const& trouble) {
+    std::fputs(fmt::format("polhode-bench: {}\n", trouble.what()).c_str(), stderr);
     return 5;
   }
   return 0;
