@@ -5,128 +5,19 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
-#include <type_traits>
 #include <unordered_map>
 #include <utility>
 
-#include "bench/suite_select.hpp"
+#include "bench/suite_expect.hpp"
+#include "bench/suite_graphs.hpp"
 #include "bench/suite_toml.hpp"
-#include "problems/graph.hpp"
+#include "problems/parameters.hpp"
 
 namespace polhode::bench {
 namespace {
 
 using namespace suite_toml;
 using results::Cell;
-
-constexpr std::size_t max_cells = 1'000'000;
-
-// --- Selectors -------------------------------------------------------------------------------------------------------
-
-Selector read_selector(Toml const& value, std::string const& where, SelectableWords const& known) {
-  Selector selector;
-  for (auto const& [key, member] : table(value, where, selector_keys())) {
-    bool const numeric = member.is_integer() || member.is_floating();
-    auto const pattern = numeric ? fmt::format("{}", number(member, key)) : text(member, key);
-    located(member, [&] { check_pattern(key, pattern, known); });
-    selector[key] = pattern;
-  }
-  return selector;
-}
-
-// --- Expectations ----------------------------------------------------------------------------------------------------
-
-template <class T>
-constexpr bool is_number = std::is_arithmetic_v<T>;
-template <class T>
-constexpr bool is_number<std::optional<T>> = std::is_arithmetic_v<T>;
-
-/// What may be said of each field of a record: the keys of its bound.
-std::map<std::string, Words> const& boundable_fields() {
-  static std::map<std::string, Words> const fields = [] {
-    Words const number_keys{"min", "max", "is", "golden", "rel", "abs", "digits"};
-    std::map<std::string, Words> all{{"norm_drift", number_keys}, {"order", {"min", "max", "nominal", "within"}}};
-    results::Record const record;
-    results::for_each_field(record, [&]<class Member>(std::string const& name, std::string_view, Member const&) {
-      all[name] = is_number<Member> ? number_keys : Words{"is", "golden"};
-    });
-    all.erase("cpu_time_s");  // seconds are never gated
-    return all;
-  }();
-  return fields;
-}
-
-std::optional<double> optional_number(Toml const& in, std::string const& field, std::string const& key) {
-  auto const* value = find(in, key);
-  return value ? std::optional(number(*value, field + "." + key)) : std::nullopt;
-}
-
-/// A width: how far a value may be off.
-std::optional<double> optional_width(Toml const& in, std::string const& field, std::string const& key) {
-  auto const value = optional_number(in, field, key);
-  if (value && *value < 0) fail(*find(in, key), fmt::format("{}.{} = {}: must not be negative", field, key, *value));
-  return value;
-}
-
-Bound read_bound(Toml const& value, std::string const& field, Words const& keys) {
-  bool const numeric = keys.front() == "min";
-  std::string const example = numeric ? "{ max = 1e-9 }" : "{ is = \"ok\" }";
-  if (!value.is_table()) wrong_type(value, field, "table such as " + example);
-  table(value, field, keys);
-  auto const flag = [&](std::string const& key) {
-    auto const* member = find(value, key);
-    return member != nullptr && truth(*member, field + "." + key);
-  };
-  Bound bound;
-  bound.field = field;
-  bound.min = optional_number(value, field, "min");
-  bound.max = optional_number(value, field, "max");
-  if (auto const* is = find(value, "is")) {
-    bound.is = numeric ? fmt::format("{}", number(*is, field + ".is")) : text(*is, field + ".is");
-  }
-  bound.nominal = flag("nominal");
-  bound.within = optional_width(value, field, "within");
-  bound.golden = flag("golden");
-  bound.rel = optional_width(value, field, "rel");
-  bound.abs = optional_width(value, field, "abs");
-  bound.digits = optional_width(value, field, "digits");
-  if (bound.min && bound.max && *bound.min > *bound.max) {
-    fail(value, fmt::format("{}: min = {} is above max = {}", field, *bound.min, *bound.max));
-  }
-  if (bound.within && !bound.nominal) fail(value, field + ": 'within' needs nominal = true");
-  bool const tolerance = bound.rel || bound.abs || bound.digits;
-  if (tolerance && !bound.golden) fail(value, field + ": 'rel', 'abs' and 'digits' need golden = true");
-  bool const bounds = bound.min || bound.max || bound.is || bound.nominal || bound.golden;
-  if (!bounds) fail(value, field + " is not bounded; give e.g. " + example);
-  return bound;
-}
-
-Expectation read_expectation(Toml const& value, SelectableWords const& words) {
-  std::string const where = "[[expect]]";
-  if (auto const* seconds = find(value, "cpu_time_s")) fail(*seconds, "cpu_time_s: seconds are never gated");
-  auto const& fields = boundable_fields();
-  Words keys{"select", "min_cells", "xfail"};
-  for (auto const& [field, bound_keys] : fields) keys.push_back(field);
-  auto const& members = table(value, where, keys);
-
-  Expectation expectation;
-  expectation.line = static_cast<int>(value.location().line());
-  auto const& select = need(value, where, "select", "select = { integrator = \"rk4\" }, or select = {} for every cell");
-  expectation.select = read_selector(select, "select", words);
-  for (auto const& [key, member] : members) {
-    auto const field = fields.find(key);
-    if (field != fields.end()) expectation.bounds.push_back(read_bound(member, key, field->second));
-  }
-  if (expectation.bounds.empty()) fail(value, where + " bounds nothing; give e.g. norm_drift = { max = 1e-9 }");
-  if (auto const* least = find(value, "min_cells")) {
-    expectation.min_cells = static_cast<int>(whole(*least, "min_cells", 1, max_cells));
-  }
-  if (auto const* reason = find(value, "xfail")) {
-    expectation.xfail = text(*reason, "xfail");
-    if (expectation.xfail->empty()) fail(*reason, "xfail: empty; say why the expectation fails");
-  }
-  return expectation;
-}
 
 // --- Sweeps ----------------------------------------------------------------------------------------------------------
 
@@ -249,22 +140,15 @@ Words read_words(Toml const& sweep, std::string const& key, Words const& otherwi
   return words;
 }
 
-/// The links in a file that the suite names: by its path, from the suite's folder, or beside the suite, where `run`
-/// puts a copy. The record holds the numbers.
-std::vector<double> read_graph_beside(Toml const& name, std::vector<std::filesystem::path>& files) {
-  std::filesystem::path const written = name.as_string().str;
-  std::filesystem::path const folder = std::filesystem::path(name.location().file_name()).parent_path();
-  std::filesystem::path const beside = folder / written.filename();
-  files.push_back(std::filesystem::exists(folder / written) ? folder / written : beside);
+std::vector<double> read_links(Toml const& name, GraphFiles& graphs) {
   try {
-    return read_graph(files.back().string());
+    return graphs.read(name.as_string().str);
   } catch (ParameterError const& error) {
     fail(name, error.what());
   }
 }
 
-std::vector<decltype(Cell::set)> read_sets(Toml const& sweep, ProblemWord const& problem,
-                                           std::vector<std::filesystem::path>& files) {
+std::vector<decltype(Cell::set)> read_sets(Toml const& sweep, ProblemWord const& problem, GraphFiles& graphs) {
   auto const* axis = find(sweep, "set");
   if (!axis) return {{}};
   std::vector<decltype(Cell::set)> sets;
@@ -274,7 +158,7 @@ std::vector<decltype(Cell::set)> read_sets(Toml const& sweep, ProblemWord const&
     for (auto const& [name, value] : item->as_table()) {
       located(value, [&] { check_parameter(problem, name, {0}); });
       if (name == "graph" && value.is_string()) {
-        set[name] = read_graph_beside(value, files);
+        set[name] = read_links(value, graphs);
         continue;
       }
       for (auto const* entry : items(value, name)) set[name].push_back(number(*entry, name));
@@ -294,8 +178,7 @@ std::vector<std::int64_t> read_seeds(Toml const& sweep) {
 }
 
 /// The cells of one sweep, in the order of its axes.
-std::vector<Cell> read_sweep(Toml const& sweep, Vocabulary const& vocabulary,
-                             std::vector<std::filesystem::path>& files) {
+std::vector<Cell> read_sweep(Toml const& sweep, Vocabulary const& vocabulary, GraphFiles& graphs) {
   table(sweep, "[[sweep]]",
         {"problem", "variant", "formulation", "integrator", "policy", "h", "rtol", "atol", "t_end", "set", "seed",
          "tags", "reference"});
@@ -334,7 +217,7 @@ std::vector<Cell> read_sweep(Toml const& sweep, Vocabulary const& vocabulary,
     cells = cross(sweep, cells, methods, use);
     cells = cross(sweep, cells, policies, assign(&Cell::policy));
     cells = cross(sweep, cells, horizons, assign(&Cell::t_end));
-    cells = cross(sweep, cells, read_sets(sweep, problem, files), assign(&Cell::set));
+    cells = cross(sweep, cells, read_sets(sweep, problem, graphs), assign(&Cell::set));
     cells = cross(sweep, cells, seeds, assign(&Cell::seed));
     check_size(sweep, all.size() + cells.size());
     std::move(cells.begin(), cells.end(), std::back_inserter(all));
@@ -355,15 +238,14 @@ std::vector<Toml const*> tables(Toml const& root, std::string const& key) {
 }
 
 /// The cells of all sweeps; one that several sweeps make is listed once, with the tags of all of them.
-std::vector<SuiteCell> read_sweeps(Toml const& root, Vocabulary const& vocabulary,
-                                   std::vector<std::filesystem::path>& files) {
+std::vector<SuiteCell> read_sweeps(Toml const& root, Vocabulary const& vocabulary, GraphFiles& graphs) {
   auto const sweeps = tables(root, "sweep");
   if (sweeps.empty()) fail(root, "no [[sweep]]; a suite has at least one");
   std::vector<SuiteCell> all;
   std::unordered_map<std::string, std::size_t> places;
   std::size_t drawn = 0;
   for (auto const* sweep : sweeps) {
-    auto cells = read_sweep(*sweep, vocabulary, files);
+    auto cells = read_sweep(*sweep, vocabulary, graphs);
     auto const tags = read_words(*sweep, "tags", {}, [](auto const& tag) {
       if (tag.empty()) throw UsageError("tags: a tag must not be empty");
       return tag;
@@ -412,7 +294,9 @@ Suite read_suite(std::filesystem::path const& file, Vocabulary const& vocabulary
   suite.name = text(name, "name");
   if (suite.name.empty()) fail(name, "name: empty; give e.g. name = \"mine\"");
   suite.timing = read_timing(root);
-  suite.cells = read_sweeps(root, vocabulary, suite.files);
+  GraphFiles graphs(file.parent_path());
+  suite.cells = read_sweeps(root, vocabulary, graphs);
+  suite.files = graphs.files();
 
   auto const words = selectable_words(vocabulary, suite);
   std::vector<Selector> excluded;

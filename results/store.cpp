@@ -219,7 +219,8 @@ Contents read(fs::path const& path) {
 
 bool is_own_name(std::string_view name) {
   bool const hidden = name.starts_with('.');
-  return hidden || name == "suite.toml" || name.starts_with(catalogue_file) || name.ends_with(".jsonl");
+  bool const ours = name.starts_with(catalogue_file) || name.starts_with(benchmarks_file);  // and their drafts
+  return hidden || ours || name == "suite.toml" || name.ends_with(".jsonl");
 }
 
 Writer::Writer(fs::path const& file, Meta const& meta) : file_(file) {

@@ -299,6 +299,24 @@ TEST(CliRobust, AGraphFromElsewhereIsCopiedByItsName) {
   EXPECT_EQ(text_of(folder.path / "inner/r/graph.txt"), text_of(folder.path / "graph.txt"));
 }
 
+TEST(CliRobust, AGraphDoesNotReplaceWhatARunWrites) {
+  for (std::string const name : {"suite.toml", "catalogue.json", "run-1.jsonl"}) {
+    Folder folder;
+    folder.write(name, "1 2 1\n2 3 1\n3 1 1\n");
+    folder.write("given.toml",
+                 "name = 'g'\ntiming = { enabled = false }\n[[sweep]]\nproblem = 'quaternion_sync'\nintegrator = "
+                 "'rk4'\nh = 0.1\nset = { n = 3, graph = '" +
+                     name + "' }\n");
+    Result const result = polhode(folder, "run given.toml --out r");
+    EXPECT_EQ(result.code, 5);
+    EXPECT_EQ(result.err,
+              "polhode: given.toml:7: parameter graph: a result folder, where it is copied to, cannot hold "
+              "a graph called '" +
+                  name + "'; rename it, e.g. graph.txt\n");
+    EXPECT_FALSE(fs::exists(folder.path / "r"));
+  }
+}
+
 TEST(CliRobust, RecordsWithPathsForNamesStayInTheReport) {
   Folder folder;
   std::string const evil = "../../../evil/$(touch evil)`touch evil`|;'\"";
