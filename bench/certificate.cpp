@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "results/record.hpp"
+#include "results/shallow.hpp"
 
 namespace polhode::bench {
 namespace {
@@ -37,25 +38,27 @@ Layout layout_of(std::vector<std::string> const& columns) {
   return {.attitude = has("q4"), .rate = has("wz") || has("y3"), .position = has("vz")};
 }
 
-nlohmann::ordered_json contents_of(Certificate const& c) {
+using Json = nlohmann::ordered_json;
+
+Json contents_of(Certificate const& c) {
   std::vector<std::string> methods{"Taylor, degree 32, float128, flat quaternion", "Gauss, 8 stages, float128, S3"};
-  nlohmann::ordered_json closed_form;  // null
+  Json closed_form;  // null
   if (c.closed_form) {
     methods.emplace_back("closed form, elliptic functions, float128");
     closed_form = *c.closed_form;
   }
-  nlohmann::ordered_json json{{"schema", results::schema},
-                              {"kind", "reference"},
-                              {"id", c.id},
-                              {"subject", c.subject},
-                              {"methods", methods},
-                              {"bar_rad", c.bar},
-                              {"disagreement_rad", c.disagreement},
-                              {"halving_rad", c.halving},
-                              {"closed_form_rad", closed_form},
-                              {"columns", names_of(c.states.at(0), c.layout)}};
+  Json json{{"schema", results::schema},
+            {"kind", "reference"},
+            {"id", c.id},
+            {"subject", c.subject},
+            {"methods", methods},
+            {"bar_rad", c.bar},
+            {"disagreement_rad", c.disagreement},
+            {"halving_rad", c.halving},
+            {"closed_form_rad", closed_form},
+            {"columns", names_of(c.states.at(0), c.layout)}};
   for (std::size_t k = 0; k < c.times.size(); ++k) {
-    nlohmann::ordered_json row{{"t", c.times[k]}};
+    Json row{{"t", c.times[k]}};
     for (Quad x : numbers(c.states[k], c.layout)) {
       row["decimal"].push_back(decimal(x));
       row["hex"].push_back(hexadecimal(x));
@@ -68,7 +71,7 @@ nlohmann::ordered_json contents_of(Certificate const& c) {
 }  // namespace
 
 void save(Certificate const& certificate, std::filesystem::path const& folder) {
-  nlohmann::ordered_json json = contents_of(certificate);
+  Json json = contents_of(certificate);
   json["hash"] = results::hash_of(json.dump());
   std::filesystem::create_directories(folder);
   std::filesystem::path const file = folder / (certificate.id + ".json");
@@ -84,7 +87,7 @@ Certificate load(std::filesystem::path const& file) {
   try {
     std::ifstream in(file);
     if (!in) throw refuse("cannot be read");
-    auto json = nlohmann::ordered_json::parse(in);
+    auto json = Json::parse(in, results::shallow);
     std::string const hash = json.at("hash");
     json.erase("hash");
     if (results::hash_of(json.dump()) != hash)
@@ -99,6 +102,8 @@ Certificate load(std::filesystem::path const& file) {
       c.closed_form = closed_form->get<double>();
     std::vector<std::string> const columns = json.at("columns");
     c.layout = layout_of(columns);
+    bool const whole_bodies = c.layout.size() > 0 && columns.size() % std::size_t(c.layout.size()) == 0;
+    if (!whole_bodies || columns.empty()) throw refuse("its columns are not those of bodies");
     for (auto const& row : json.at("states")) {
       std::vector<Quad> x;
       for (std::size_t i = 0; i < columns.size(); ++i)
@@ -106,8 +111,11 @@ Certificate load(std::filesystem::path const& file) {
       c.times.push_back(row.at("t"));
       c.states.push_back(state_of(x, c.layout));
     }
+    if (c.states.empty()) throw refuse("it has no states");
     return c;
   } catch (nlohmann::json::exception const& error) {
+    throw refuse(error.what());
+  } catch (std::invalid_argument const& error) {
     throw refuse(error.what());
   }
 }

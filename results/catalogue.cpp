@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "results/shallow.hpp"
 #include "results/store.hpp"
 
 namespace polhode::results {
@@ -21,7 +22,7 @@ using Json = nlohmann::ordered_json;
 
 /// An array of objects, each with its name.
 Json list_of(std::string const& text) {
-  Json json = Json::parse(text, nullptr, false);
+  Json json = Json::parse(text, shallow, false);
   auto const is_named = [](Json const& entry) {
     return entry.is_object() && entry.contains("name") && entry["name"].is_string();
   };
@@ -31,10 +32,16 @@ Json list_of(std::string const& text) {
   return json;
 }
 
+int order_from(Json const& json) {
+  bool const integer = json.is_number_integer() && json >= 0 && json <= 1000;
+  if (!integer) throw std::invalid_argument("order: must be an integer from 0 to 1000");
+  return json.get<int>();
+}
+
 IntegratorFacts facts_of(Json const& json) {
   IntegratorFacts facts;
   facts.family = json.value("family", "");
-  if (json.contains("order") && !json["order"].is_null()) facts.order = json["order"].get<int>();
+  if (json.contains("order") && !json["order"].is_null()) facts.order = order_from(json["order"]);
   facts.adaptive_only = json.value("adaptive_only", false);
   facts.preserves = json.value("preserves", std::vector<std::string>());
   facts.source = json.value("source", "");

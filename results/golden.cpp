@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "results/run_name.hpp"
+#include "results/shallow.hpp"
 #include "results/store.hpp"
 
 namespace polhode::results {
@@ -67,7 +68,7 @@ std::string text_at(Json const& json, std::string const& key) {
 
 Json parse(std::string const& text) {
   try {
-    Json json = Json::parse(text);
+    Json json = Json::parse(text, shallow);
     if (json.is_object()) return json;
   } catch (nlohmann::json::exception const&) {
   }

@@ -95,6 +95,21 @@ void hammer(int inputs, unsigned seed) {
 TEST(Fuzz, ReadersReturnOrRefuse) {
   hammer(1500, 1);
 }
+TEST(Fuzz, NestingWithoutEndOverflowsNoStack) {
+  for (Target const& target : targets)
+    for (std::string const piece : {"[", "{\"name\":", "{\"kind\":[", "[[sweep]]\nx=[", "a."}) {
+      std::string deep;
+      for (int i = 0; i < 200'000; ++i) deep += piece;
+      EXPECT_NO_THROW(target.run(deep)) << target.name << ": " << piece << piece << "...";
+      EXPECT_NO_THROW(target.run("[" + deep + "]")) << target.name << ": [" << piece << piece << "...";
+    }
+  // What is nested and complete is not refused by the parser.
+  std::string const open(200'000, '['), close(200'000, ']');
+  for (Target const& target : targets)
+    for (std::string const& around : {std::string("[{\"name\":\"rk4\",\"own\":"), std::string("{\"kind\":"),
+                                      std::string("{\"schema\":1,\"kind\":\"meta\",\"a\":")})
+      EXPECT_NO_THROW(target.run(around + open + close + "}" + (around[0] == '[' ? "]" : ""))) << target.name;
+}
 TEST(Full, ReadersReturnOrRefuseForLong) {
   if (std::getenv("POLHODE_FULL") == nullptr) GTEST_SKIP() << "a minute; POLHODE_FULL=1 runs it";
   for (unsigned seed = 2; seed < 6; ++seed) hammer(25'000, seed);

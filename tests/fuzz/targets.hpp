@@ -8,13 +8,18 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 
+#include "bench/certificate.hpp"
 #include "bench/suite.hpp"
 #include "bench/trajectory.hpp"
 #include "problems/graph.hpp"
+#include "results/benchmarks.hpp"
+#include "results/golden.hpp"
 #include "results/store.hpp"
 #include "tests/small_vocabulary.hpp"
 
@@ -40,7 +45,11 @@ class File {
 
 inline void suite(std::string const& bytes) {
   static File const file(".toml");
-  static bench::Vocabulary const words = bench::test::small_vocabulary();
+  static bench::Vocabulary const words = [] {
+    bench::Vocabulary all = bench::test::small_vocabulary();
+    all.problems.back().parameters.push_back({"graph", "", {}});
+    return all;
+  }();
   try {
     static_cast<void>(bench::read_suite(file.holding(bytes), words));
   } catch (bench::SuiteError const&) {
@@ -70,12 +79,60 @@ inline void graph(std::string const& bytes) {
   } catch (ParameterError const&) {
   }
 }
+inline void golden(std::string const& bytes) {
+  static File const file(".jsonl");
+  try {
+    static_cast<void>(results::read_golden(file.holding(bytes)));
+  } catch (results::StoreError const&) {
+  }
+}
+/// A certificate, and the same with the hash that its contents call for: whoever edits one can compute that.
+inline void reference(std::string const& bytes) {
+  static File const file(".json");
+  auto const load = [](std::string const& text) {
+    try {
+      static_cast<void>(bench::load(file.holding(text)));
+    } catch (bench::ReferenceError const&) {
+    }
+  };
+  load(bytes);
+  constexpr int deepest = 20;  // to write what is deeper is the harness's trouble, not the reader's
+  auto const shallow = [](int depth, nlohmann::ordered_json::parse_event_t, nlohmann::ordered_json&) {
+    return depth <= deepest;
+  };
+  auto json = nlohmann::ordered_json::parse(bytes, shallow, false);
+  if (!json.is_object()) return;
+  json.erase("hash");
+  auto const dump = [&] { return json.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace); };
+  json["hash"] = results::hash_of(dump());
+  load(dump());
+}
+inline void catalogue(std::string const& bytes) {
+  try {
+    static_cast<void>(results::catalogue_from(bytes));
+  } catch (std::invalid_argument const&) {
+  }
+}
+inline void benchmarks(std::string const& bytes) {
+  try {
+    static_cast<void>(results::benchmarks_from(bytes));
+  } catch (std::invalid_argument const&) {
+  }
+}
 
 struct Target {
   std::string_view name;  ///< of its corpus, too
   void (*run)(std::string const& bytes);
 };
-inline constexpr std::array targets{Target{"suite", suite}, Target{"records", records},
-                                    Target{"trajectory", trajectory}, Target{"graph", graph}};
+inline constexpr std::array targets{Target{"suite", suite},           Target{"records", records},
+                                    Target{"trajectory", trajectory}, Target{"graph", graph},
+                                    Target{"golden", golden},         Target{"reference", reference},
+                                    Target{"catalogue", catalogue},   Target{"benchmarks", benchmarks}};
+
+inline Target const& target_named(std::string_view name) {
+  for (Target const& target : targets)
+    if (target.name == name) return target;
+  throw std::invalid_argument("no reader is called " + std::string(name));
+}
 
 }  // namespace polhode::fuzz
