@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "report/render.hpp"
 #include "report/text.hpp"
 
@@ -26,10 +28,16 @@ table { border-collapse: collapse; font-size: .9rem; font-variant-numeric: tabul
 th, td { padding: .25rem .5rem; text-align: left; vertical-align: top; border-bottom: 1px solid var(--rule); }
 td { max-width: 28rem; }
 th { vertical-align: bottom; }
+tr { background: var(--page); }
 tbody tr:nth-child(even) { background: var(--row); }
+:is(td, th):first-child { position: sticky; left: 0; background: inherit; }
+.long { min-width: 14rem; }
+.figure { white-space: nowrap; }
 .number { text-align: right; }
 .number, .short { white-space: nowrap; }
 code { font: .9em ui-monospace, "SF Mono", Consolas, "DejaVu Sans Mono", monospace; }
+@media (prefers-color-scheme: dark) { main > figure > .wide > svg { filter: invert(.93) hue-rotate(180deg); } }
+@media (max-width: 46rem) { main > figure > .wide > svg { max-width: none; min-width: 44rem; } }
 @media print { nav { display: none; } }
 )";
 
@@ -44,10 +52,27 @@ void replace_all(std::string& text, std::string_view from, std::string_view to) 
   }
 }
 
+/// Escaped text in which no line ends within 1e-17: a browser breaks it behind the hyphen.
+std::string unbroken(std::string const& text) {
+  constexpr std::string_view part = "0123456789.";
+  std::string out;
+  std::size_t done = 0;
+  for (auto at = text.find("e-"); at != std::string::npos; at = text.find("e-", at + 2)) {
+    std::size_t const before = text.find_last_not_of(part, at == 0 ? 0 : at - 1);
+    std::size_t const from = before == std::string::npos ? 0 : before + 1;
+    std::size_t const to = std::min(text.find_first_not_of(part, at + 2), text.size());
+    if (from >= at || to == at + 2 || from < done) continue;
+    out +=
+        fmt::format("{}<span class=\"figure\">{}</span>", text.substr(done, from - done), text.substr(from, to - from));
+    done = to;
+  }
+  return out + text.substr(done);
+}
+
 std::string render(Text const& text) {
   std::string out;
   for (Span const& span : text.spans) {
-    out += span.code ? fmt::format("<code>{}</code>", escape_html(span.text)) : escape_html(span.text);
+    out += span.code ? fmt::format("<code>{}</code>", escape_html(span.text)) : unbroken(escape_html(span.text));
   }
   return out;
 }

@@ -74,8 +74,8 @@ export class Panel {
   }
   /** What stands where one reads a point before any was pointed at. */
   hint() {
-    this.output.replaceChildren(this.view.hint || (this.view.tabular ? '' :
-      'Point at a curve, or use the arrow keys in the picture: the record is read out here.'));
+    const usual = 'Point at a curve, or use the arrow keys in the picture: the record is read out here.';
+    this.output.textContent = this.view.hint ?? (this.view.tabular ? '' : usual);
   }
   note(text) {
     this.remark.textContent = text;

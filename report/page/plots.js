@@ -28,12 +28,15 @@ export function plain(text) {
   return String(text).replaceAll('&', '&amp;').replaceAll('<', '&lt;').replaceAll('>', '&gt;');
 }
 
-/** How a run's method looks: colour and symbol by integrator, open for rivals, dashed if adaptive, dotted by policy. */
+/** How a run's method looks: colour by integrator, symbol by integrator and formulation (in quaternions as in the still
+ * figures), open for rivals, dashed if adaptive, dotted by policy. */
 export function lookOf(records, run) {
   const {look, rival} = records.integrator(run);
   const colours = darkQuery.matches ? DARK : LIGHT;
+  const others = records.words('formulation').filter((word) => word !== 'quaternion').sort();
+  const shift = 1 + others.indexOf(records.text('formulation', run));  // 0 for quaternions
   const adaptive = records.value('h', run) === null, policy = records.text('policy', run) !== 'none';
-  return {colour: colours[look % colours.length], symbol: SYMBOLS[look % SYMBOLS.length], open: rival,
+  return {colour: colours[look % colours.length], symbol: SYMBOLS[(look + shift) % SYMBOLS.length], open: rival,
     dash: DASHES[(adaptive ? 1 : 0) + (policy ? 2 : 0)]};
 }
 
@@ -49,7 +52,11 @@ export function ticks(low, high) {
   const values = [], texts = [];
   if (high - low < 1.2) {
     for (let k = Math.floor(low); k <= Math.ceil(high); ++k) {
-      for (const m of [1, 2, 5]) values.push(m * 10 ** k), texts.push(`${m}·10<sup>${k}</sup>`);
+      for (const m of [1, 2, 5]) {
+        const value = Number(`${m}e${k}`);  // 0.2, not 0.2 and a rounding
+        values.push(value);
+        texts.push(Math.abs(k) <= 3 ? String(value) : `${m}·10<sup>${k}</sup>`);
+      }
     }
     return {tickvals: values, ticktext: texts};
   }
@@ -236,8 +243,12 @@ export function drawSpace(panel, lines, semiAxes, titles) {
         name: plain(line.name), opacity: far ? 0.2 : 1, hoverinfo: 'name', marker: {color: line.colour, size: 8},
         line: {color: line.colour, width: line.width}};
     }));
+    const reach = 1.3 * most, ink = variable('--ink');
+    const tips = [[reach, 0, 0], [0, reach, 0], [0, 0, reach]].map(projected);
+    traces.push(...tips.map(([x, y]) => ({type: 'scatter', mode: 'lines', x: [0, x], y: [0, y], hoverinfo: 'skip', opacity: 0.5, line: {color: ink, width: 1}})));
+    const names = tips.map(([x, y], k) => ({x: 1.1 * x, y: 1.1 * y, text: plain(titles[k]), showarrow: false, font: {color: ink}}));
     const hidden = {visible: false, zeroline: false};
-    drawn(plot, traces, themed({xaxis: hidden, yaxis: {...hidden, scaleanchor: 'x'}}));
+    drawn(plot, traces, themed({annotations: names, xaxis: hidden, yaxis: {...hidden, scaleanchor: 'x'}}));
     panel.note('This browser draws nothing in three dimensions (no WebGL): the picture is a projection.');
     return;
   }
@@ -254,7 +265,7 @@ export function drawSpace(panel, lines, semiAxes, titles) {
     x: line.points[0], y: line.points[1], z: line.points[2], opacity: line.faint ? 0.75 : 1,
     hovertemplate: `${plain(line.name)}<br>%{x:.4g}, %{y:.4g}, %{z:.4g}<extra></extra>`,
     line: {color: line.colour, width: line.width * 2}, marker: {color: line.colour, size: 5}}));
-  const size = plot.clientWidth < 420 ? 1.3 : 1.12;
+  const size = plot.clientWidth < 420 ? 1.45 : 1.28;
   drawn(plot, [shape, ...traces], themed({margin: {l: 0, r: 0, t: 0, b: 0}, scene: {
     aspectmode: 'cube', camera: {eye: {x: size, y: size, z: 0.8 * size}, center: {x: 0, y: 0, z: -0.08}},
     xaxis: axis(titles[0]), yaxis: axis(titles[1]), zaxis: axis(titles[2])}}));

@@ -35,7 +35,7 @@ const winners = {
         const list = ranked.slice(0, 12).map((c, i) => `${i + 1}. ${records.method(c.run)} ${c.interpolated ? '≈ ' : ''}${priceText(c.value, measure)}`).join('\n');
         return {text: [keyOf(lookOf(records, best.run)), make('b', {}, best.name), ` ${best.interpolated ? '≈ ' : ''}${priceText(best.value, measure)}`,
           make('small', {}, other ? `${records.isRival(best.run) ? 'ours' : 'rival'} × ${number(other.value / best.value)}${other.low <= best.high ? ' (tie)' : ''}` :
-            records.isRival(best.run) ? 'none of ours' : 'no rival')],
+            ranked.length === 1 ? 'nobody else gets there' : records.isRival(best.run) ? 'none of ours' : 'no rival')],
         class: records.isRival(best.run) ? 'theirs' : 'ours', read: [best.run, list]};
       })]);
     }
@@ -106,9 +106,14 @@ const formulations = {
       const [run] = runs.sort((a, b) => sign * (records.value(measure, a) - records.value(measure, b)));
       return run !== undefined && {run, value: records.value(measure, run), text: number(records.value(measure, run))};
     };
+    const why = (group) => {
+      const runs = group.flatMap((sweep) => sweep.runs);
+      if (runs.length === 0) return '';
+      return runs.every((run) => records.text('status', run) === 'refused') ? 'refused' : 'not reached';
+    };
     const rows = [...groupBy(here, (sweep) => records.text('integrator', sweep.like))].map(([name, group]) => [name, ...columns.map((column) => {
       const entry = found(group.filter((sweep) => records.text('formulation', sweep.like) === column));
-      if (!entry) return group.some((sweep) => records.text('formulation', sweep.like) === column) ? 'not reached' : '';
+      if (!entry) return why(group.filter((sweep) => records.text('formulation', sweep.like) === column));
       csv.push([name, column, records.text('cell', entry.run), entry.value]);
       return {text: entry.text, read: [entry.run, '']};
     })]);
