@@ -14,6 +14,7 @@
 #include "bench/ranks.hpp"
 #include "bench/run.hpp"
 #include "bench/run_report.hpp"
+#include "bench/slurm.hpp"
 #include "results/store.hpp"
 
 namespace polhode::bench {
@@ -56,6 +57,55 @@ void say(RunSummary const& summary) {
   if (summary.interrupted) std::fputs("polhode: interrupted; the same command goes on from here\n", stderr);
 }
 
+// ---- --print-slurm --------------------------------------------------------------------------------------------------
+
+/// What `run` is told of the script.
+struct SlurmFlags {
+  bool print = false;
+  double ranks = 0, shards = 8;
+  std::string time{};
+};
+
+int part_count(char const* flag, double wanted) {
+  constexpr int most = 100000;
+  if (wanted >= 1 && wanted <= most && wanted == std::floor(wanted)) return int(wanted);
+  throw UsageError(fmt::format("{} {}: a whole number from 1 to {} is wanted", flag, wanted, most));
+}
+
+/// The command that each job is to run; relative paths would depend on where it starts.
+std::vector<std::string> command_of(std::string const& suite, std::filesystem::path const& out,
+                                    RunOptions const& options) {
+  std::vector<std::string> command{std::filesystem::read_symlink("/proc/self/exe"), "run", suite, "--out",
+                                   std::filesystem::absolute(out)};
+  if (!options.filter.empty()) command.insert(command.end(), {"--filter", options.filter});
+  if (options.retry_failed) command.emplace_back("--retry-failed");
+  if (options.timeout != RunOptions{}.timeout)
+    command.insert(command.end(), {"--timeout", fmt::format("{:g}", options.timeout)});
+  return command;
+}
+
+std::string script_of(std::string const& name, RunOptions const& options, SlurmFlags const& flags) {
+  bool const parted = options.shards > 1 || options.isolate || options.fresh || options.dry_run;
+  if (parted)
+    throw UsageError(
+        "--print-slurm makes the parts itself: it goes with neither --shard, --fresh, --isolate nor --dry-run");
+  std::filesystem::path const file = suite_file(name);
+  bool const built_in = file.parent_path() == suites_folder();
+  Suite const suite = read_suite(file, vocabulary());
+  auto const cells = int(count_cells(suite, options.filter));
+  bool const array = flags.ranks == 0;
+  int const parts = array ? part_count("--shards", flags.shards) : part_count("--ranks", flags.ranks);
+  std::filesystem::path const out = options.out.empty() ? default_folder(suite) : options.out;
+  return slurm_script({.name = suite.name,
+                       .command = command_of(built_in ? name : std::filesystem::absolute(file).string(), out, options),
+                       .array = array,
+                       .parts = std::min(parts, cells),
+                       .time = flags.time.empty() ? "" : slurm_time(flags.time),
+                       .exclusive = array && suite.timing.enabled});
+}
+
+// ---- run ------------------------------------------------------------------------------------------------------------
+
 /// Returns the exit code.
 int run_on_ranks(std::string const& name, RunOptions const& options) {
   Ranks ranks = Ranks::of_this_job();
@@ -95,6 +145,13 @@ void add_run(CLI::App& app, int& code) {
   auto const threads = std::make_shared<double>(0);
   CLI::Option* has_threads =
       add_number(*verb, "--threads", *threads, "Of the accuracy pass; default one per processor")->type_name("INT");
+  auto const slurm = std::make_shared<SlurmFlags>();
+  CLI::Option* print = verb->add_flag("--print-slurm", slurm->print,
+                                      "Print a script for sbatch instead: an array of --shards, or --ranks of one job");
+  add_number(*verb, "--shards", slurm->shards, "Of the printed job array")->type_name("INT")->needs(print);
+  CLI::Option* has_ranks =
+      add_number(*verb, "--ranks", slurm->ranks, "Of the printed MPI job")->type_name("INT")->needs(print);
+  verb->add_option("--time", slurm->time, "Limit of each printed job, as sbatch takes it")->needs(print);
   verb->callback([=, &code] {
     options->out = *out;
     if (!shard->empty()) read_shard(*shard, *options);
@@ -103,6 +160,8 @@ void add_run(CLI::App& app, int& code) {
       throw UsageError(
           fmt::format("timeout = {}: a limit is a finite number of seconds; 0 for none", options->timeout));
     if (has_threads->count() > 0) options->threads = thread_count(*threads);
+    if (has_ranks->count() > 0) part_count("--ranks", slurm->ranks);
+    if (slurm->print) return fmt::print("{}", script_of(*name, *options, *slurm));
     interruptible();
     code = run_on_ranks(*name, *options);
   });

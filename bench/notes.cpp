@@ -8,7 +8,6 @@
 #include <stdexcept>
 #include <thread>
 
-#include "bench/run.hpp"
 #include "bench/vocabulary.hpp"
 
 namespace polhode::bench {

@@ -185,8 +185,7 @@ class SuiteRun {
     tasks_ = prepare_all(suite_, options_.filter);
     take_shard(tasks_, options_);
     summary_.cells = tasks_.size();
-    summary_.out = options_.out.empty() ? std::filesystem::path("polhode-results") / results::file_name_of(suite_.name)
-                                        : options_.out;
+    summary_.out = options_.out.empty() ? default_folder(suite_) : options_.out;
   }
 
   /// The manager's: locks the folder, writes what belongs to the suite. Returns when the run began, and a 1 or 0 for
@@ -342,6 +341,14 @@ std::filesystem::path suite_file(std::string const& name_or_file) {
   if (is_name && std::filesystem::exists(built_in)) return built_in;
   if (!is_name || std::filesystem::exists(name_or_file)) return name_or_file;
   throw UsageError(unknown("suite", name_or_file, suite_names()));
+}
+
+std::filesystem::path default_folder(Suite const& suite) {
+  return std::filesystem::path("polhode-results") / results::file_name_of(suite.name);
+}
+
+std::size_t count_cells(Suite const& suite, std::string const& filter) {
+  return prepare_all(suite, filter).size();
 }
 
 RunSummary run_suite(Suite const& suite, RunOptions const& options, Ranks& ranks) {

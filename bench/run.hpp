@@ -11,13 +11,8 @@
 
 namespace polhode::bench {
 
-/// A valid selection that matches no cell. Exit code 3.
-struct NothingSelected : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
 struct RunOptions {
-  std::filesystem::path out;  ///< empty: polhode-results/SUITE
+  std::filesystem::path out;  ///< empty: default_folder
   std::string filter;         ///< regular expression over "problem/variant/formulation/integrator/policy"; empty: all
   bool fresh = false;         ///< forget what the folder holds
   bool retry_failed = false;  ///< run again what did not end ok
@@ -39,6 +34,11 @@ struct RunSummary {
 std::vector<std::string> suite_names();
 /// The suite of that name among the built-in ones, or that file.
 std::filesystem::path suite_file(std::string const& name_or_file);
+
+/// Where a run of the suite goes if it is not told: polhode-results/SUITE.
+std::filesystem::path default_folder(Suite const& suite);
+/// How many cells of the suite --filter selects. Throws what run_suite does for mistakes in them.
+std::size_t count_cells(Suite const& suite, std::string const& filter);
 
 /// Every rank calls it; each writes a file of records of its own, and the manager's summary is that of all. Several
 /// ranks take no times. Throws SuiteError, UsageError (bad filter), NothingSelected, results::StoreError,

@@ -16,6 +16,10 @@ namespace polhode::bench {
 struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
+/// A valid selection that matches no cell. Exit code 3.
+struct NothingSelected : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
 
 struct ParameterWord {
   std::string name, unit;

@@ -12,7 +12,6 @@
 #include <thread>
 #include <vector>
 
-#include "bench/run.hpp"
 #include "bench/vocabulary.hpp"
 
 namespace polhode::bench {
