@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "integrators/commutator_free.hpp"
+#include "integrators/step_size.hpp"
 
 namespace polhode {
 
@@ -67,7 +68,7 @@ void each_with_size(F const& f, Chart<M> const& e, Point<M> const& a, Point<M> c
 ///   |e| <= atol + rtol 1 rad               for a rotation vector e between the two solutions
 ///   |e| <= atol + rtol max(|y|, |y_new|)   for body rates and all that is flat
 ///
-/// Steps change as in DOPRI5: proportional and integral, 0.9 of what the error allows, at most 10 times longer.
+/// Steps change as in DOPRI5: step_size.hpp.
 ///
 /// fails  Status::step_underflow if the step falls below 10 ulp of t, Status::max_steps after `most` trial steps in one
 ///        advance, Status::diverged if the state or its slope is not finite
@@ -79,7 +80,12 @@ class ControlledInCharts {
 
  public:
   ControlledInCharts(Pair pair, P const& problem, Adaptive control, NormPolicy policy)
-      : pair_(std::move(pair)), problem_(&problem), control_(control), policy_(policy), frame_(shape_of(problem)) {
+      : pair_(std::move(pair)),
+        problem_(&problem),
+        control_(control),
+        policy_(policy),
+        size_(Pair::rule, Pair::order),
+        frame_(shape_of(problem)) {
     if constexpr (PowerSpace<M>) {
       slope_ = error_ = shaped_like<Chart<M>>(problem.initial());
       y_ = problem.initial();
@@ -97,59 +103,41 @@ class ControlledInCharts {
   Status step(Point<M>& x, R& t, R t_end) {
     slope_at(t, x, slope_);
     if (!all_finite(slope_)) return Status::diverged;
-    if (!(R(0.0) < h_)) h_ = starting_step(x, t, t_end - t);
-    bool rejected_before = false;
-    for (std::int64_t trial = 0; trial < most; ++trial) {
-      R const left = t_end - t;
-      bool const last = h_ * R(1.0 + 1e-10) >= left;
-      R const h = last ? left : h_;
-      if (double(h) <= 10 * std::numeric_limits<double>::epsilon() * std::fabs(double(t)) && !last)
-        return Status::step_underflow;
+    if (!size_.known()) start(x, t, t_end - t);
+    for (std::int64_t trials = 0; trials < most; ++trials) {
+      auto const trial = size_.trial(t, t_end);
+      if (size_.underflows(trial, t)) return Status::step_underflow;
       auto&& frame = frame_.open();
       frame.k[0] = slope_;
-      pair_.attempt(*problem_, t, h, x, frame, y_, error_);
-      double const size = norm(error_, x, y_);
-      if (!std::isfinite(size)) {
-        if (++work_.rejected; !all_finite(x)) return Status::diverged;
-        h_ = h * R(0.1);
-        rejected_before = true;
+      pair_.attempt(*problem_, t, trial.h, x, frame, y_, error_);
+      double const square = mean_square(error_, x, y_);
+      if (!size_.accepts(square)) {
+        ++work_.rejected;
+        if (!std::isfinite(square) && !all_finite(x)) return Status::diverged;
+        size_.reject(trial, square);
         continue;
       }
-      double const exponent = 1.0 / pair_.order - 0.03;
-      if (size <= 1) {
-        // 0.75 of the plain exponent, and the last error's memory: the PI constants of DOPRI5 (beta = 0.04).
-        double const factor = std::pow(size, exponent) / std::pow(last_size_, 0.04);
-        double const growth = std::clamp(0.9 / std::max(factor, 1e-10), 0.2, 10.0);
-        // A step cut short by t_end says little about the next one.
-        if (!last || h == h_ || growth < 1) h_ = h * R(rejected_before ? std::min(growth, 1.0) : growth);
-        last_size_ = std::max(size, 1e-4);
-        x = y_;
-        t = last ? t_end : R(t + h);
-        ++work_.steps;
-        if (policy_ != NormPolicy::none) projections_.template apply<M>(x, policy_);
-        return Status::ok;
-      }
-      ++work_.rejected;
-      rejected_before = true;
-      h_ = h * R(std::max(0.2, 0.9 / std::pow(size, exponent)));
+      size_.accept(trial, square);
+      x = y_;
+      t = trial.last ? t_end : R(t + trial.h);
+      ++work_.steps;
+      if (policy_ != NormPolicy::none) projections_.template apply<M>(x, policy_);
+      return Status::ok;
     }
     return Status::max_steps;
   }
-  /// The error's memory is forgotten, the step size is kept: the field jumped, the time scale hardly did.
-  void restart() { last_size_ = 1e-4; }
+  /// The error's memory is forgotten, the step size is kept.
+  void restart() { size_.restart(); }
   /// A new run: the step size is forgotten, too.
-  void begin() {
-    restart();
-    h_ = R(0.0);
-  }
+  void begin() { size_.forget(); }
   Work work() const { return work_; }
   Projections projections() const { return projections_; }
 
  private:
   static constexpr std::int64_t most = 10'000'000;
 
-  /// RMS of an error in units of what is allowed.
-  double norm(Chart<M> const& error, Point<M> const& x, Point<M> const& y) const {
+  /// Of an error in units of what is allowed at x and y.
+  double mean_square(Chart<M> const& error, Point<M> const& x, Point<M> const& y) const {
     double sum = 0;
     each_with_size<M>(
         [&](S const& e, S const& size) {
@@ -157,10 +145,10 @@ class ControlledInCharts {
           sum += part * part;
         },
         error, x, y);
-    return std::sqrt(sum / size_of(error));
+    return sum / size_of(error);
   }
-  /// Hairer, Norsett & Wanner I, II.4, "starting step size", in the chart around x.
-  R starting_step(Point<M> const& x, R const& t, R const& longest) {
+  /// The first step from x, in the chart around it.
+  void start(Point<M> const& x, R const& t, R const& longest) {
     double squares = 0;
     each_with_size<M>(
         [&](S const&, S const& size) {
@@ -168,17 +156,14 @@ class ControlledInCharts {
           squares += part * part;
         },
         slope_, x, x);
-    double const size = std::sqrt(squares / size_of(slope_)), speed = norm(slope_, x, x);
-    double h = size < 1e-5 || speed < 1e-5 ? 1e-6 : 0.01 * size / speed;
-    h = std::min(h, double(longest));
+    double const speed = std::sqrt(mean_square(slope_, x, x));
+    double const euler = size_.euler_step(std::sqrt(squares / size_of(slope_)), speed, longest);
     auto&& frame = frame_.open();
     displace<M>(
-        x, [&](auto& u, auto const& at) { add(u, R(h), at(slope_)); }, frame.k[0], y_);
-    slope_at(R(t + R(h)), y_, error_);
+        x, [&](auto& u, auto const& at) { add(u, R(euler), at(slope_)); }, frame.k[0], y_);
+    slope_at(R(t + R(euler)), y_, error_);
     add(error_, R(-1.0), slope_);
-    double const greatest = std::max(speed, norm(error_, x, x) / h);
-    double const h1 = greatest <= 1e-15 ? std::max(1e-6, h * 1e-3) : std::pow(0.01 / greatest, 1.0 / pair_.order);
-    return R(std::min({100 * h, h1, double(longest)}));
+    size_.start(euler, std::max(speed, std::sqrt(mean_square(error_, x, x)) / euler), longest);
   }
   void slope_at(R const& t, Point<M> const& x, Chart<M>& k) {
     auto&& frame = frame_.open();
@@ -189,11 +174,10 @@ class ControlledInCharts {
   P const* problem_;
   Adaptive control_;
   NormPolicy policy_;
+  StepSize<R> size_;
   Workspace<M, typename Pair::template Frame<M>> frame_;
   Chart<M> slope_, error_;
   Point<M> y_;
-  R h_ = R(0.0);
-  double last_size_ = 1e-4;
   Work work_;
   Projections projections_;
 };
@@ -209,6 +193,7 @@ struct CommutatorFreeAdaptive {
           "Curry & Owren (2019), Numer. Algorithms 82, 1359; Celledoni et al. (2022), Int. J. Comput. Math. 99, 58",
       .pitfall = "a tolerance bounds the local error, not the attitude error; relative to 1 rad of rotation"};
   static constexpr int order = 4;
+  static constexpr StepRule rule{.memory = 0.04};
 
   template <Problem P>
     requires(!P::Space::flat)

@@ -1,20 +1,12 @@
 #pragma once
-/// Adaptive steps by proportional-integral control of the local error.
-/// Source: Hairer, Norsett & Wanner, Solving ODEs I, II.4 (starting step, norm, code DOPRI5's constants);
-///         Gustafsson (1991), ACM TOMS 17, 533.
+/// Adaptive steps by control of the local error: the driver of embedded pairs. The law of the step size: step_size.hpp.
+/// Source: Hairer, Norsett & Wanner, Solving ODEs I, II.4 (norm)
 #include <algorithm>
 
 #include "integrators/integrator.hpp"
+#include "integrators/step_size.hpp"
 
 namespace polhode {
-
-/// The constants of the rule: after an error e (1 is what is allowed) and one of e_last before it the next step is
-///   h clamp(safety e^-(1/order - 3/4 memory) e_last^memory, least, most)
-/// Source: Hairer, Norsett & Wanner I, II.4 and IV.2, codes DOPRI5 and DOP853.
-struct StepRule {
-  double safety = 0.9, least = 0.2, most = 10;
-  double memory = 0;  ///< beta; 0 is plain integral control
-};
 
 /// Drives a pair (see EmbeddedPair) with error control per component: |e_i| <= atol + rtol max(|y_i|, |y_new,i|), RMS.
 ///
@@ -35,7 +27,13 @@ class Controlled {
   static constexpr bool dense = keeps_inside;
 
   Controlled(Pair pair, P const& problem, Adaptive control, NormPolicy policy)
-      : pair_(std::move(pair)), problem_(&problem), control_(control), policy_(policy), frame_(shape_of(problem)) {
+      : pair_(std::move(pair)),
+        problem_(&problem),
+        control_(control),
+        policy_(policy),
+        per_component_(1.0 / double(size_of(shape_of(problem)))),
+        size_(Pair::rule, Pair::order),
+        frame_(shape_of(problem)) {
     if constexpr (PowerSpace<M>) {
       slope_ = shaped_like<Chart<M>>(problem.initial());
       trial_.fit(problem.initial());
@@ -55,65 +53,45 @@ class Controlled {
     if (!fresh_slope_) slope_at(t, x, slope_);
     fresh_slope_ = true;
     if (!all_finite(slope_)) return Status::diverged;
-    if (!(R(0.0) < h_)) h_ = starting_step(x, t, t_end - t);
-    bool rejected_before = false;
-    R const reach(policy_ == NormPolicy::relaxation ? relaxed_reach : 1 + 1e-10);
+    if (!size_.known()) start(x, t, t_end - t);
+    double const reach = policy_ == NormPolicy::relaxation ? relaxed_reach : 1 + 1e-10;
     R relaxed(0.0);  // gamma - 1 of a step that must land, and is taken again for it
-    for (std::int64_t trial = 0; trial < most; ++trial) {
-      R const left = t_end - t;
-      bool const last = h_ * reach >= left;
-      R const h = last ? left / (R(1.0) + relaxed) : h_;
-      if (double(h) <= 10 * std::numeric_limits<double>::epsilon() * std::fabs(double(t)) && !last)
-        return Status::step_underflow;
+    for (std::int64_t trials = 0; trials < most; ++trials) {
+      auto const trial = size_.trial(t, t_end, reach, relaxed);
+      if (size_.underflows(trial, t)) return Status::step_underflow;
       auto&& frame = frame_.open();
-      frame.k[0] = slope_;
-      pair_.attempt(*problem_, t, h, x, frame, trial_.y, trial_.slope, trial_.error);
-      double const size = size_of_error(h, x, frame);
-      if (!std::isfinite(size)) {
-        if (++work_.rejected; !all_finite(x)) return Status::diverged;
-        h_ = h * R(0.1);
-        rejected_before = true;
+      double const error = attempt(t, trial.h, x, frame);
+      if (!size_.accepts(error)) {
+        ++work_.rejected;
+        if (!std::isfinite(error) && !all_finite(x)) return Status::diverged;
+        size_.reject(trial, error);
         continue;
       }
-      constexpr double exponent = 1.0 / Pair::order - 0.75 * rule.memory;
-      double const factor = std::pow(size, exponent) / std::pow(last_size_, rule.memory);
-      if (size <= 1) {
-        R gamma_less_one(0.0);
-        if constexpr (OneFlatQuaternion<M>)
-          if (policy_ == NormPolicy::relaxation) [[unlikely]] {
-            gamma_less_one = relaxation_less_one<M>(x, trial_.y);
-            if (!can_relax(gamma_less_one)) {
-              ++work_.rejected;
-              rejected_before = true;
-              h_ = h * R(0.5);
-              continue;
-            }
-            if (last && relaxed == R(0.0) && gamma_less_one != R(0.0)) {
-              relaxed = gamma_less_one;
-              continue;
-            }
+      R gamma_less_one(0.0);
+      if constexpr (OneFlatQuaternion<M>)
+        if (policy_ == NormPolicy::relaxation) [[unlikely]] {
+          gamma_less_one = relaxation_less_one<M>(x, trial_.y);
+          if (!can_relax(gamma_less_one)) {
+            ++work_.rejected;
+            size_.reject_for(trial, 0.5);
+            continue;
           }
-        double const growth = std::clamp(rule.safety / std::max(factor, 1e-10), rule.least, rule.most);
-        // A step cut short by t_end says little about the next one.
-        if (!last || h == h_ || growth < 1) h_ = h * R(rejected_before ? std::min(growth, 1.0) : growth);
-        last_size_ = std::max(size, 1e-4);
-        R const end = last ? t_end : R(t + h + gamma_less_one * h);
-        if constexpr (dense) keep(x, t, end, gamma_less_one, frame);
-        if (policy_ != NormPolicy::none)
-          projections_.template apply<M>(x, trial_.y, policy_, double(h), gamma_less_one);
-        x = trial_.y;
-        if constexpr (Pair::first_same_as_last)
-          slope_ = trial_.slope;
-        else
-          fresh_slope_ = false;
-        t = end;
-        ++work_.steps;
-        if (policy_ != NormPolicy::none) fresh_slope_ = false;
-        return Status::ok;
-      }
-      ++work_.rejected;
-      rejected_before = true;
-      h_ = h * R(std::max(rule.least, rule.safety / std::pow(size, exponent)));
+          if (trial.last && relaxed == R(0.0) && gamma_less_one != R(0.0)) {
+            relaxed = gamma_less_one;
+            continue;
+          }
+        }
+      size_.accept(trial, error);
+      R const end = trial.last ? t_end : R(t + trial.h + gamma_less_one * trial.h);
+      if constexpr (dense) keep(x, t, end, gamma_less_one, frame);
+      if (policy_ != NormPolicy::none)
+        projections_.template apply<M>(x, trial_.y, policy_, double(trial.h), gamma_less_one);
+      x = trial_.y;
+      if constexpr (Pair::first_same_as_last) slope_ = trial_.slope;
+      fresh_slope_ = Pair::first_same_as_last && policy_ == NormPolicy::none;
+      t = end;
+      ++work_.steps;
+      return Status::ok;
     }
     return Status::max_steps;
   }
@@ -121,13 +99,13 @@ class Controlled {
   /// did.
   void restart() {
     fresh_slope_ = false;
-    last_size_ = 1e-4;
+    size_.restart();
     if constexpr (dense) kept_.goes_on = false;
   }
   /// A new run: the step size is forgotten, too.
   void begin() {
     restart();
-    h_ = R(0.0);
+    size_.forget();
   }
   /// The state at time t [s] within the last accepted step, under the norm policy as its end is. The first call after a
   /// step pays the evaluations that the extension needs beyond the step's own. Not after restart(): the field may be
@@ -152,45 +130,69 @@ class Controlled {
 
  private:
   static constexpr std::int64_t most = 10'000'000;
-  static constexpr StepRule rule = Pair::rule;
 
-  double norm(Chart<M> const& error, Point<M> const& x, Point<M> const& y) const {
-    double sum = 0;
-    Chart<M>::each(
-        [&](S const& e, S const& a, S const& b) {
-          double const scale = control_.atol + control_.rtol * std::max(std::fabs(double(a)), std::fabs(double(b)));
-          double const part = double(e) / scale;
-          sum += part * part;
-        },
-        error, x, y);
-    return std::sqrt(sum / size_of(error));
+  /// A plain problem is copied for the length of a trial, as in EqualSteps.
+  using Field = std::conditional_t<std::is_trivially_copyable_v<P>, P const, P const&>;
+
+  /// One trial step of h from x to trial_; returns the square of its error, 1 being what is allowed.
+  double attempt(R const& t, R const& h, Point<M> const& x, auto& frame) {
+    if constexpr (ScalarTraits<S>::flattened && !PowerSpace<M>)
+      return attempt_flattened(t, h, x, frame);
+    else
+      return attempt_here(t, h, x, frame);
   }
-  /// Of the trial step of h, by 1.
-  double size_of_error([[maybe_unused]] R const& h, Point<M> const& x, [[maybe_unused]] auto const& frame) {
-    double const size = norm(trial_.error, x, trial_.y);
+  [[gnu::flatten, gnu::noinline, gnu::noclone]] double attempt_flattened(R const& t, R const& h, Point<M> const& x,
+                                                                         auto& frame) {
+    return attempt_here(t, h, x, frame);
+  }
+  POLHODE_INLINE double attempt_here(R const& t, R const& h, Point<M> const& x, auto& frame) {
+    Field p = *problem_;
+    frame.k[0] = slope_;
+    pair_.attempt(p, t, h, x, frame, trial_.y, trial_.slope, trial_.error);
+    weigh(x, trial_.y);
+    double const square = mean_square(trial_.error);
     if constexpr (Pair::two_estimates) {
       pair_.template estimate_third<M>(h, frame, trial_.third);
-      double const third = norm(trial_.third, x, trial_.y);
-      return size > 0 ? size * size / std::sqrt(size * size + 0.01 * third * third) : size;
+      double const third = mean_square(trial_.third);
+      return square > 0 ? square * (square / (square + 0.01 * third)) : square;
     } else {
-      return size;
+      return square;
     }
   }
-  /// Hairer, Norsett & Wanner I, II.4, "starting step size".
-  R starting_step(Point<M> const& x, R const& t, R const& longest) {
-    double const size = norm(x, x, x), speed = norm(slope_, x, x);
-    double h = size < 1e-5 || speed < 1e-5 ? 1e-6 : 0.01 * size / speed;
-    h = std::min(h, double(longest));
+  /// What is allowed at x and y: its reciprocal, for the error is known later, and often twice.
+  POLHODE_INLINE void weigh(Point<M> const& x, Point<M> const& y) {
+    Chart<M>::each(
+        [&](S& weight, S const& a, S const& b) POLHODE_LAMBDA {
+          double const size = std::max(std::fabs(double(a)), std::fabs(double(b)));
+          weight = S(1 / (control_.atol + control_.rtol * size));
+        },
+        trial_.weight, x, y);
+  }
+  /// Of an error in units of what is allowed.
+  POLHODE_INLINE double mean_square(Chart<M> const& error) const {
+    double even = 0, odd = 0;  // two chains of additions: half the latency
+    bool is_odd = false;
+    Chart<M>::each(
+        [&](S const& e, S const& weight) POLHODE_LAMBDA {
+          double const part = double(e) * double(weight);
+          (is_odd ? odd : even) += part * part;
+          is_odd = !is_odd;
+        },
+        error, trial_.weight);
+    return (even + odd) * per_component_;
+  }
+  double norm(Chart<M> const& error) const { return std::sqrt(mean_square(error)); }
+  /// The first step from x.
+  void start(Point<M> const& x, R const& t, R const& longest) {
+    weigh(x, x);
+    double const speed = norm(slope_), euler = size_.euler_step(norm(x), speed, longest);
     Point<M>& y = trial_.y;
     Chart<M>& change = trial_.slope;
     y = x;
-    add(y, R(h), slope_);
-    slope_at(R(t + R(h)), y, change);
+    add(y, R(euler), slope_);
+    slope_at(R(t + R(euler)), y, change);
     add(change, R(-1.0), slope_);
-    double const curvature = norm(change, x, x) / h;
-    double const greatest = std::max(speed, curvature);
-    double const h1 = greatest <= 1e-15 ? std::max(1e-6, h * 1e-3) : std::pow(0.01 / greatest, 1.0 / pair_.order);
-    return R(std::min({100 * h, h1, double(longest)}));
+    size_.start(euler, std::max(speed, norm(change) / euler), longest);
   }
 
   void slope_at(R const& t, Point<M> const& x, Chart<M>& k) {
@@ -201,10 +203,10 @@ class Controlled {
   /// What a trial step gives.
   struct Trial {
     Point<M> y;
-    Chart<M> slope, error, third;
+    Chart<M> slope, error, third, weight;
     void fit(Point<M> const& x) {
       y = x;
-      slope = error = shaped_like<Chart<M>>(x);
+      slope = error = weight = shaped_like<Chart<M>>(x);
       if constexpr (Pair::two_estimates) third = error;
     }
   };
@@ -233,13 +235,13 @@ class Controlled {
   P const* problem_;
   Adaptive control_;
   NormPolicy policy_;
+  double per_component_;
+  StepSize<R> size_;
   Workspace<M, typename Pair::template Frame<M>> frame_;
   Chart<M> slope_;
   Trial trial_;
   [[no_unique_address]] std::conditional_t<dense, Kept, Nothing> kept_;
   bool fresh_slope_ = false;
-  R h_ = R(0.0);
-  double last_size_ = 1e-4;
   Work work_;
   Projections projections_;
 };
