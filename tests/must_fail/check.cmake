@@ -1,0 +1,33 @@
+# Entries that lack something, in the units that would compile them: the first error says what, in words that stand in
+# the entry's file behind "expected:", and the compiler is done within 30 lines.
+#   cmake -D compiler=FILE -D eigen=FOLDER -D sources=FOLDER -P check.cmake
+file(GLOB entries ${CMAKE_CURRENT_LIST_DIR}/*.hpp)
+set(failures 0)
+foreach(entry IN LISTS entries)
+  file(STRINGS ${entry} expected REGEX "^// expected: ")
+  string(REPLACE "// expected: " "" expected "${expected}")
+  if(entry MATCHES "/no_(step|info|bind)")
+    set(unit methods_unit.cpp -DPOLHODE_METHODS=Entries -DPOLHODE_SPACES=PositionSpaces
+             "-DPOLHODE_METHODS_HEADER=\"${entry}\"")
+  else()
+    set(unit problem_unit.cpp -DPOLHODE_PROBLEM=Entry "-DPOLHODE_PROBLEM_HEADER=\"${entry}\"")
+  endif()
+  execute_process(COMMAND ${compiler} -std=gnu++20 -fsyntax-only -fmax-errors=1 -I${sources} -isystem ${eigen} ${unit}
+                  WORKING_DIRECTORY ${sources}/bench RESULT_VARIABLE code ERROR_VARIABLE output)
+  string(REGEX MATCHALL "\n" lines "${output}")
+  list(LENGTH lines count)
+  string(FIND "${output}" "error: " first)
+  string(SUBSTRING "${output}" ${first} -1 error)
+  string(FIND "${error}" "\n" end)
+  string(SUBSTRING "${error}" 0 ${end} error)
+  string(FIND "${error}" "${expected}" found)
+  cmake_path(GET entry FILENAME name)
+  message(STATUS "${name}: ${count} lines; ${error}")
+  if(code EQUAL 0 OR found LESS 0 OR count GREATER_EQUAL 30)
+    message(STATUS "expected fewer than 30 lines, and as the first error: ${expected}\n${output}")
+    math(EXPR failures "${failures} + 1")
+  endif()
+endforeach()
+if(failures OR NOT entries)
+  message(FATAL_ERROR "${failures} entries are not refused as they should be")
+endif()
