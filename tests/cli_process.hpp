@@ -81,10 +81,11 @@ inline Words split(std::string const& words) {
 /// One process: started by the constructor, waited for by finish(), killed if still there at the end.
 class Process {
  public:
-  /// `out` and `err` replace the files in which the output is caught; `environment` is added: {"NAME=value"}.
+  /// `out` and `err` replace the files in which the output is caught; `environment` is added: {"NAME=value"}. `program`
+  /// is looked for in $PATH.
   Process(fs::path const& folder, Words words, Words environment = {}, fs::path const& out = {},
-          fs::path const& err = {}) {
-    words.insert(words.begin(), POLHODE_BINARY);
+          fs::path const& err = {}, std::string const& program = POLHODE_BINARY) {
+    words.insert(words.begin(), program);
     for (char** entry = environ; *entry != nullptr; ++entry)
       if (!std::string(*entry).starts_with("POLHODE_DATA=")) environment.emplace_back(*entry);
     posix_spawn_file_actions_t actions;
@@ -97,9 +98,9 @@ class Process {
     open(STDERR_FILENO, err.empty() ? caught_.path / "err" : err, O_WRONLY | O_CREAT | O_NOCTTY);
     posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
     int const error =
-        posix_spawn(&pid_, POLHODE_BINARY, &actions, nullptr, pointers(words).data(), pointers(environment).data());
+        posix_spawnp(&pid_, program.c_str(), &actions, nullptr, pointers(words).data(), pointers(environment).data());
     posix_spawn_file_actions_destroy(&actions);
-    if (error != 0) throw std::system_error(error, std::generic_category(), POLHODE_BINARY);
+    if (error != 0) throw std::system_error(error, std::generic_category(), program);
   }
   ~Process() {
     if (pid_ == 0) return;
