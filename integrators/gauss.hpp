@@ -28,12 +28,14 @@ struct GaussOf {
     return GaussControlled<P>(stages, p, control, policy);
   }
 };
+/// Gauss collocation of s stages and order 2 s, iterated to round-off, on any space.
 template <int s>
 struct Gauss : GaussOf {
   static_assert(1 <= s && s <= most_gauss_stages);
   constexpr Gauss() : GaussOf{s} {}
 };
 
+/// The catalogue's gauss1 ... gauss8. Source: Hairer, Lubich & Wanner, II.1.3
 template <int s>
 struct GaussEntry : Gauss<s> {
   static constexpr std::string_view names[] = {"gauss1", "gauss2", "gauss3", "gauss4",

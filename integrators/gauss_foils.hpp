@@ -76,12 +76,15 @@ constexpr MethodInfo foil_info(std::string_view name, std::string_view pitfall) 
           .source = "a foil: Hairer, Lubich & Wanner, II.1.3, left unconverged",
           .pitfall = pitfall};
 }
+/// Foil: one Jacobi sweep from the slopes at the beginning of the step.
 struct Gauss2Sweeps1 : UnconvergedGauss2<Stop::after_sweeps, 1> {
   static constexpr MethodInfo info = foil_info("gauss2_sweeps1", "one sweep: nothing is conserved");
 };
+/// Foil: two such sweeps.
 struct Gauss2Sweeps2 : UnconvergedGauss2<Stop::after_sweeps, 2> {
   static constexpr MethodInfo info = foil_info("gauss2_sweeps2", "two sweeps: nothing is conserved");
 };
+/// Foil: sweeps until they change the slopes by less than 1e-6, absolute.
 struct Gauss2Tol6 : UnconvergedGauss2<Stop::below_tolerance, 0> {
   static constexpr MethodInfo info = foil_info("gauss2_tol6", "stopped at 1e-6: linear drift in every invariant");
 };

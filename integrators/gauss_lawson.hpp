@@ -90,6 +90,7 @@ struct SweepRule {
 /// One body's state on flat quaternions.
 using BodyPoint = Point<RigidBody<FlatQuaternion<double>>>;
 
+/// One step of Gauss in a co-rotating frame, its s stages in the lanes of one pack of registers of `bytes` bytes.
 template <int s, int bytes>
 struct LawsonStep {
   using L = Lanes<s, double, bytes>;

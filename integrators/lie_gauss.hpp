@@ -137,6 +137,7 @@ struct LieGauss {
   static constexpr int most_sweeps = 200;
 };
 
+/// The catalogue's lie_gauss1 ... lie_gauss4: order 2 s on a group. Source: Zanna, Engo & Munthe-Kaas (2001)
 template <int s>
 struct LieGaussEntry : LieGauss<s> {
   static_assert(1 <= s && s <= 4);

@@ -44,6 +44,7 @@ struct Work {
   std::int64_t evaluations = 0;            ///< of forces, by methods that do not call the field
 };
 
+/// What kind of method it is: how lists and the report group them.
 enum class Family { explicit_rk, gauss, lie_group, rigid_body, splitting, exact, taylor, library };
 
 /// What a method asks of a problem or its space. Refusals are rows, with this as their reason.

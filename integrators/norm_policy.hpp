@@ -10,6 +10,7 @@
 
 namespace polhode {
 
+/// What is done about the norm at the border of a step.
 enum class NormPolicy {
   none,     ///< nothing: the undisturbed method
   project,  ///< the nearest point of the constraint after every step. For quaternions the tether paper's explicit

@@ -299,24 +299,31 @@ struct Splitting {
   }
 };
 
+/// Three rotations about the principal axes and the kick, composed after Strang (1968): order 2.
 struct SplitStrang : Splitting<ThreeRotations, Strang> {
   static constexpr MethodInfo info = info_of("split_strang");
 };
+/// The same by Yoshida (1990): order 4.
 struct SplitYoshida4 : Splitting<ThreeRotations, Yoshida4> {
   static constexpr MethodInfo info = info_of("split_yoshida4");
 };
+/// The same by Blanes & Moan (2002), S6: order 4.
 struct SplitBm4 : Splitting<ThreeRotations, BlanesMoan4> {
   static constexpr MethodInfo info = info_of("split_bm4");
 };
+/// A symmetric top, a rotation for the rest, and the kick, after Strang: order 2.
 struct SplitSrStrang : Splitting<SymmetricAndRotation, Strang> {
   static constexpr MethodInfo info = info_of("split_sr_strang");
 };
+/// The same by Blanes & Moan: order 4.
 struct SplitSrBm4 : Splitting<SymmetricAndRotation, BlanesMoan4> {
   static constexpr MethodInfo info = info_of("split_sr_bm4");
 };
+/// The free body in closed form between kicks of the torque, after Strang: order 2, exact without a torque.
 struct ExactKicks : Splitting<ExactFlow, Strang> {
   static constexpr MethodInfo info = info_of("exact_kicks");
 };
+/// The same by Blanes & Moan: order 4.
 struct ExactKicks4 : Splitting<ExactFlow, BlanesMoan4> {
   static constexpr MethodInfo info = info_of("exact_kicks4");
 };

@@ -323,6 +323,7 @@ struct TaylorOfDegree {
     return TaylorStepper<P>(p, control, policy, degree);
   }
 };
+/// Power series of degree 20 about every step, with equal or its own steps. Source: Jorba & Zou (2005)
 struct Taylor : TaylorOfDegree<20> {
   static constexpr MethodInfo info{.name = "taylor",
                                    .family = Family::taylor,

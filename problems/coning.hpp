@@ -65,6 +65,7 @@ struct ConingCraft {
   }
 };
 
+/// The catalogue entry: parameters `angle`, `rate`, formulations, claims.
 class Coning {
  public:
   explicit Coning(Choice const& choice) { assign(parameters(), choice.set); }

@@ -102,6 +102,7 @@ struct DeadZoneBody {
   }
 };
 
+/// The catalogue entry: parameters, variants, columns and claims of the dead-zone paper.
 class DeadZone {
  public:
   explicit DeadZone(Choice const& choice) {

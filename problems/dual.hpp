@@ -7,6 +7,7 @@
 
 namespace polhode {
 
+/// A number and its derivatives in N directions: for Jacobians. Source: Griewank & Walther (2008), ch. 3
 template <int N>
 struct Dual {
   double value = 0;

@@ -189,6 +189,7 @@ class Erasing<P, MovingBody<A>> : public Erased<MovingBody<A>> {
   P problem_;
 };
 
+/// Problem P as its space alone: what the slow form of a run calls, virtually.
 template <Problem P>
 class ErasedAs final : public Erasing<P> {
   using M = typename P::Space;

@@ -7,6 +7,7 @@
 
 namespace polhode {
 
+/// The catalogue entry: parameters `inertia` [kg m^2], `q0`, `omega0` [rad/s]; torque-free.
 class FreeBody {
  public:
   explicit FreeBody(Choice const& choice) { assign(parameters(), choice.set); }

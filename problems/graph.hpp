@@ -160,8 +160,8 @@ inline std::vector<double> read_graph(std::string const& file) {
 }
 
 /// A ring, in which each node hears the one before (so the graph is strongly connected), and for each node one more
-/// that it hears, at random; weights 1. Equal on every machine: <random>'s distributions are not. Two nodes: the ring
-/// alone.
+/// that it hears, at random; weights 1. Equal on every machine, as the distributions of the standard library are
+/// not. Two nodes: the ring alone.
 inline Graph random_digraph(int nodes, std::uint64_t seed) {
   std::mt19937_64 bits(seed);
   Graph graph;

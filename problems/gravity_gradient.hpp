@@ -75,6 +75,7 @@ struct GravityGradientBody {
   }
 };
 
+/// The catalogue entry: parameters of body and orbit, columns and claims.
 class GravityGradient {
  public:
   explicit GravityGradient(Choice const& choice) {

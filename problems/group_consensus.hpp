@@ -126,6 +126,7 @@ struct ConsensusSwarm {
   }
 };
 
+/// The catalogue entry: parameters, initial data `ic1` ... `ic3`, columns and claims of the group-consensus paper.
 class GroupConsensus {
  public:
   explicit GroupConsensus(Choice const& choice)

@@ -18,6 +18,7 @@
 
 namespace polhode {
 
+/// The catalogue entry: the bodies of variants `bruels`, `potential` and `dae`.
 class HeavyTop {
  public:
   explicit HeavyTop(Choice const& choice) : constrained_(choice.has("dae")), about_pivot_(choice.has("potential")) {

@@ -9,6 +9,7 @@
 
 namespace polhode {
 
+/// A truncated power series in time, as a scalar: for Taylor methods. Source: Griewank & Walther (2008), ch. 13
 template <class R, int most>
 struct Jet {
   std::array<R, most + 1> c{};  ///< coefficients of 1, t, t^2, ..., c[degree]

@@ -33,6 +33,7 @@ struct KroghField {
   Vec3<S> initial() const { return start; }
 };
 
+/// The catalogue entry: three plain numbers and their closed form.
 class KroghB5 {
  public:
   explicit KroghB5(Choice const& choice) {

@@ -19,6 +19,7 @@
 
 namespace polhode {
 
+/// The catalogue entry: gains `k_p` [N m], `k_d` [N m s] and the variants of the loop.
 class PdSlew {
  public:
   explicit PdSlew(Choice const& choice) {

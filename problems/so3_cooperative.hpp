@@ -24,6 +24,7 @@
 
 namespace polhode {
 
+/// The catalogue entry: graph, methods 1 to 3, gains, columns and claims of the SO(3) paper.
 class So3Cooperative {
  public:
   explicit So3Cooperative(Choice const& choice)

@@ -14,6 +14,7 @@
 
 namespace polhode {
 
+/// The catalogue entry: gains, cases, sampling, columns and claims of the tether paper.
 class TetherCapture {
  public:
   explicit TetherCapture(Choice const& choice) {

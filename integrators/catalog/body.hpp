@@ -10,6 +10,7 @@
 
 namespace polhode {
 
+/// Methods for one rigid body and for bodies under a constraint.
 struct BodyMethods : Types<Exact, MoserVeselov<2>, MoserVeselov<4>, MoserVeselov<6>, MoserVeselov<8>, MoserVeselov<10>,
                            LieVariational2, SplitStrang, SplitYoshida4, SplitBm4, SplitSrStrang, SplitSrBm4, ExactKicks,
                            ExactKicks4, HalfExplicit4, Rattle, GeneralizedAlpha> {};

@@ -8,6 +8,7 @@
 
 namespace polhode {
 
+/// Explicit methods on any space: Runge-Kutta pairs and power series.
 struct ExplicitMethods : Types<Rk4, Dopri5, Dopri5Ode45, Dop853, Verner65, Verner76, Verner98, Taylor> {};
 
 }  // namespace polhode

@@ -7,6 +7,7 @@
 
 namespace polhode {
 
+/// Gauss collocation: iterated, in canonical variables, in a co-rotating frame, and the foils.
 struct GaussMethods : Types<GaussEntry<1>, GaussEntry<2>, GaussEntry<3>, GaussEntry<4>, GaussEntry<5>, GaussEntry<6>,
                             GaussEntry<7>, GaussEntry<8>,              // to round-off
                             Gauss2Sweeps1, Gauss2Sweeps2, Gauss2Tol6,  // and not

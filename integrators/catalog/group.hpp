@@ -10,6 +10,7 @@
 
 namespace polhode {
 
+/// Methods that step on a Lie group.
 struct GroupMethods : Types<LieEuler, Rkmk2, Rkmk3, Rkmk4,  // Munthe-Kaas
                             CrouchGrossman3, CrouchGrossman4, CommutatorFree3, CommutatorFree4, CommutatorFreeAdaptive,
                             LieGaussEntry<1>, LieGaussEntry<2>, LieGaussEntry<3>, LieGaussEntry<4>, Magnus4, Magnus6> {

@@ -21,6 +21,7 @@ namespace polhode {
 #ifdef POLHODE_HAS_GSL
 inline constexpr std::string_view gsl_not_built = "";
 
+/// Frees the library's objects.
 struct GslFree {
   void operator()(gsl_odeiv2_driver* driver) const { gsl_odeiv2_driver_free(driver); }
   void operator()(gsl_odeiv2_step* step) const { gsl_odeiv2_step_free(step); }

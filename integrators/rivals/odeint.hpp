@@ -217,24 +217,29 @@ constexpr MethodInfo info(std::string_view name, int order, std::string_view sou
 }
 }  // namespace odeint_detail
 
+/// Kutta (1901), equal steps.
 struct OdeintRk4 : odeint_detail::RunsFixedSteps<odeint_detail::Kutta4> {
   static constexpr MethodInfo info =
       odeint_detail::info("odeint_rk4", 4, "Boost.Odeint 1.74, runge_kutta4_classic on std::array");
 };
+/// Cash & Karp (1990), 5(4).
 struct OdeintCashKarp54 : odeint_detail::RunsBoth<odeint_detail::CashKarp54> {
   static constexpr MethodInfo info =
       odeint_detail::info("odeint_cash_karp54", 5, "Boost.Odeint 1.74, runge_kutta_cash_karp54, make_controlled");
 };
+/// Dormand & Prince (1980), 5(4).
 struct OdeintDopri5 : odeint_detail::RunsBoth<odeint_detail::Dopri5> {
   static constexpr MethodInfo info =
       odeint_detail::info("odeint_dopri5", 5, "Boost.Odeint 1.74, runge_kutta_dopri5, make_controlled",
                           "reuses its last slope: must be restarted wherever the field jumps");
 };
+/// Fehlberg (1968), 7(8).
 struct OdeintRkf78 : odeint_detail::RunsBoth<odeint_detail::Fehlberg78> {
   static constexpr MethodInfo info =
       odeint_detail::info("odeint_rkf78", 8, "Boost.Odeint 1.74, runge_kutta_fehlberg78, make_controlled",
                           "the error estimate vanishes for quadratures");
 };
+/// Bulirsch & Stoer (1966): extrapolation of the midpoint rule, adaptive in order and step.
 struct OdeintBulirschStoer {
   static constexpr MethodInfo info =
       odeint_detail::info("odeint_bulirsch_stoer", 0, "Boost.Odeint 1.74, bulirsch_stoer");
@@ -243,6 +248,7 @@ struct OdeintBulirschStoer {
     return OdeintControlled<odeint_detail::BulirschStoer<P>, P>(p, control, policy);
   }
 };
+/// Adams-Bashforth-Moulton of 8 steps, equal steps, started by Runge-Kutta.
 struct OdeintAbm8 : odeint_detail::RunsFixedSteps<odeint_detail::Abm8> {
   static constexpr MethodInfo info =
       odeint_detail::info("odeint_abm8", 8, "Boost.Odeint 1.74, adams_bashforth_moulton<8>, started by Fehlberg 7(8)",

@@ -24,6 +24,7 @@ namespace polhode {
 #ifdef POLHODE_HAS_SUNDIALS
 inline constexpr std::string_view sundials_not_built = "";
 
+/// Frees the library's objects.
 struct SundialsFree {
   void operator()(SUNContext context) const { SUNContext_Free(&context); }
   void operator()(N_Vector v) const { N_VDestroy(v); }

@@ -34,6 +34,7 @@ POLHODE_INLINE Vec3<S> mrp_rate_change(Vec3<S> const& sigma, Vec3<S> const& rate
 
 // ---- The path -------------------------------------------------------------------------------------------------------
 
+/// The polynomial that the path to rest follows: of degree 3 or 5 in time.
 enum class PathKind { cubic, quintic };
 
 /// lambda, lambda', lambda'' [1, 1/s, 1/s^2].
@@ -127,6 +128,7 @@ struct SlidingLaw {
 
 // ---- The actuators --------------------------------------------------------------------------------------------------
 
+/// What the actuators do to a commanded torque v between and beyond the breakpoints b.
 enum class DeadZoneKind {
   printed,     ///< jumps at the breakpoints, by delta(b)
   continuous,  ///< delta(v) - delta(b): kinks at the breakpoints
