@@ -189,7 +189,7 @@ template <class Kernel, class Group>
 
 /// Runs `bodies`, on this thread.
 ///   T                              the number in a lane: double, or float for twice the lanes and 7 digits
-///   make.operator()<S>(block)      the problem over S for the bodies of a block, with its parameters; initial() is
+///   make(block), templated on S    the problem over S for the bodies of a block, with its parameters; initial() is
 ///                                  where they start. `gather` makes lanes of functions of a body's index. S is double,
 ///                                  too: what is delivered.
 ///   deliver(index, x, status)      the end of each body, in order of index; Status::diverged if it is not finite
