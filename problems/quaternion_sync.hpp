@@ -31,20 +31,10 @@ struct SynchronisedCraft {
   bool holds_sides = false;
 
   void operator()(S const&, State const& x, Velocity<Space>& v) const {
-    for (int i = 0, n = x.count(); i < n; ++i) {
-      Quat<S> const own = A::attitude(x[i]);
-      Vec3<S> rate = zero<Vec3<S>>();
-      if (signs) {
-        bool const side = is_negative(i, own);
-        graph.each_heard(i, [&](int j, double a) {
-          Quat<S> const heard = A::attitude(x[j]);
-          add(rate, protocol13<S>(Real<S>(a), own, heard, is_negative(j, heard) == side));
-        });
-      } else {
-        graph.each_heard(i, [&](int j, double a) { add(rate, protocol7<S>(Real<S>(a), own, A::attitude(x[j]))); });
-      }
-      v[i] = rate;
-    }
+    if (x.count() > most_in_cache)
+      command<true>(x, v);
+    else
+      command<false>(x, v);
   }
   State initial() const { return start; }
 
@@ -94,9 +84,35 @@ struct SynchronisedCraft {
   }
 
  private:
+  static constexpr int most_in_cache = 20'000;  ///< so many points fit into the second-level cache of a core
+
+  /// scattered: whom a craft hears may be anywhere in memory, so those of craft to come are sent for. Of 10^5 craft a
+  /// step of RK4 takes 0.75 to 0.95 of the time then, by how busy the third-level cache is; of few craft it would
+  /// take 1.1.
+  template <bool scattered>
+  void command(State const& x, Velocity<Space>& v) const {
+    constexpr int ahead = 16;
+    for (int i = 0, n = x.count(); i < n; ++i) {
+      if constexpr (scattered)
+        if (i + ahead < n) graph.each_heard(i + ahead, [&](int j, double) { __builtin_prefetch(&x[j]); });
+      Quat<S> const own = A::attitude(x[i]);
+      Vec3<S> rate = zero<Vec3<S>>();
+      if (signs) {
+        bool const side = is_negative(i, own);
+        graph.each_heard(i, [&](int j, double a) {
+          Quat<S> const heard = A::attitude(x[j]);
+          add(rate, protocol13<S>(Real<S>(a), own, heard, is_negative(j, heard) == side));
+        });
+      } else {
+        graph.each_heard(i, [&](int j, double a) { add(rate, protocol7<S>(Real<S>(a), own, A::attitude(x[j]))); });
+      }
+      v[i] = rate;
+    }
+  }
   bool is_negative(int i, Quat<S> const& q) const { return holds_sides ? negative[std::size_t(i)] != 0 : q.w < S(0.0); }
 };
 
+/// The catalogue entry: graph, protocols, initial data, columns and claims of the synchronisation paper.
 class QuaternionSync {
  public:
   explicit QuaternionSync(Choice const& choice)
