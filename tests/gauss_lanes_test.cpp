@@ -77,7 +77,8 @@ void expect_same_bits(D const& definition, double t_end) {
   };
   compare(GaussLawson<4>{}, FixedStep{0.7});
   compare(GaussLawson<8>{}, FixedStep{4});
-  compare(GaussLawson<8, 6>{}, FixedStep{4});
+  compare(Gauss8LawsonSweeps6{}, FixedStep{4});
+  compare(Gauss8LawsonBalanced{}, FixedStep{4});
   compare(GaussLawson<4>{}, Adaptive{1e-6, 1e-8});
   compare(GaussLawson<8>{}, Adaptive{1e-9, 1e-11});
 }
@@ -127,6 +128,73 @@ TEST(GaussLanes, ChooseStepsSoThatTheErrorIsBelowTheTolerance) {
   };
   check(FreeBody(Choice{}), 50);
   check(PdSlew(Choice{}), 60);
+}
+
+/// Sweeps a step.
+template <class Method, class Control, class P>
+double sweeps_a_step(Method const& method, Control control, P const& problem, double t_end) {
+  auto stepper = method.bind(problem, control, NormPolicy::none);
+  BodyPoint x = problem.initial();
+  EXPECT_EQ(stepper.advance(x, 0, t_end), Status::ok);
+  Work const work = stepper.work();
+  return double(work.iterations.value_or(0)) / double(work.steps + work.rejected);
+}
+// Feedback couples rates and attitude: without what speeds them up it takes 14 sweeps to round-off.
+TEST(GaussLanes, NeedFewSweepsUnderFeedback) {
+  auto const slew = field_of(PdSlew(Choice{}));
+  EXPECT_LT(sweeps_a_step(GaussLawson<8>{}, FixedStep{10}, slew, 60), 12.5);
+  EXPECT_LT(sweeps_a_step(GaussLawson<8>{}, FixedStep{5}, slew, 60), 10);
+  EXPECT_LT(sweeps_a_step(Gauss8LawsonBalanced{}, FixedStep{10}, slew, 60), 6.6);
+  EXPECT_LT(sweeps_a_step(GaussLawson<8>{}, Adaptive{1e-9, 1e-12}, slew, 60), 7.5);
+}
+// What steers the sweeps does not enter their result.
+TEST(GaussLanes, SolveTheStagesOfGauss) {
+  auto const compare = [](auto const& field, double h, double t_end) {
+    BodyPoint const gauss = solve(Gauss<8>{}, FixedStep{h}, field, t_end);
+    BodyPoint const lanes = solve(GaussLawson<8>{}, FixedStep{h}, field, t_end);
+    EXPECT_LT(angle_between(lanes.first, gauss.first), 2e-15);
+    EXPECT_LT(length(lanes.second - gauss.second), 1e-15);
+  };
+  compare(field_of(FreeBody(Choice{})), 2, 50);
+  compare(field_of(PdSlew(Choice{})), 2, 60);
+}
+TEST(GaussLanes, BalanceTheErrorOfTheSweepsWithThatOfTheSteps) {
+  auto const check = [](auto const& field, double h, int steps) {
+    auto solved = GaussLawson<8>{}.bind(field, FixedStep{h}, NormPolicy::none);
+    auto exact = GaussLawson<8>{}.bind(field, FixedStep{h / 4}, NormPolicy::none);
+    auto balanced = Gauss8LawsonBalanced{}.bind(field, FixedStep{h}, NormPolicy::none);
+    BodyPoint x = field.initial(), y = x, z = x;
+    double error = 0, more = 0;
+    for (int i = 0; i < steps; ++i) {
+      EXPECT_EQ(solved.advance(x, i * h, (i + 1) * h), Status::ok);
+      EXPECT_EQ(exact.advance(y, i * h, (i + 1) * h), Status::ok);
+      EXPECT_EQ(balanced.advance(z, i * h, (i + 1) * h), Status::ok);
+      error = std::max(error, angle_between(x.first, y.first));
+      more = std::max(more, angle_between(x.first, z.first));
+    }
+    EXPECT_GT(error, 1e-13) << h;
+    EXPECT_LT(more, 2 * error) << h;
+    EXPECT_LT(*balanced.work().iterations, 0.85 * double(*solved.work().iterations)) << h;
+  };
+  for (int steps : {3, 4, 5, 6, 7}) check(field_of(FreeBody(Choice{})), 50. / steps, steps);
+  for (int steps : {5, 6, 8, 10}) check(field_of(PdSlew(Choice{})), 60. / steps, steps);
+}
+// A stepper that was used before gives what a new one gives.
+TEST(GaussLanes, RepeatARunToTheLastBit) {
+  auto const field = field_of(PdSlew(Choice{}));
+  auto const twice = [&](auto stepper, auto begin) {
+    BodyPoint first = field.initial(), second = first;
+    EXPECT_EQ(stepper.advance(first, 0, 60), Status::ok);
+    begin(stepper);
+    EXPECT_EQ(stepper.advance(second, 0, 60), Status::ok);
+    EXPECT_TRUE(same_bits(first, second));
+  };
+  auto const restart = [](auto& stepper) { stepper.restart(); };
+  auto const begin = [](auto& stepper) { stepper.begin(); };
+  twice(GaussLawson<8>{}.bind(field, FixedStep{7}, NormPolicy::none), restart);
+  twice(Gauss8LawsonBalanced{}.bind(field, FixedStep{10}, NormPolicy::none), restart);
+  for (double tolerance : {1e-4, 1e-7, 1e-10})
+    twice(GaussLawson<8>{}.bind(field, Adaptive{tolerance, 0}, NormPolicy::none), begin);
 }
 
 // A body at rest on which a torque begins to act; one on which nothing acts.

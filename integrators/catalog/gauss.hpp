@@ -13,6 +13,6 @@ struct GaussMethods : Types<GaussEntry<1>, GaussEntry<2>, GaussEntry<3>, GaussEn
                             Gauss2Sweeps1, Gauss2Sweeps2, Gauss2Tol6,  // and not
                             GaussCanonical<1>, GaussCanonical<2>, GaussCanonical<3>, GaussCanonical<4>,
                             GaussCanonical<5>, GaussCanonical<6>, GaussCanonical<7>, GaussCanonical<8>,
-                            GaussLawsonEntry<4>, GaussLawsonEntry<8>, Gauss8LawsonSweeps6> {};
+                            GaussLawsonEntry<4>, GaussLawsonEntry<8>, Gauss8LawsonSweeps6, Gauss8LawsonBalanced> {};
 
 }  // namespace polhode

@@ -13,8 +13,8 @@
 namespace polhode {
 
 /// The own methods that are timed, fully typed, on the raced problems.
-struct RacedMethods
-    : Types<Rk4, Dopri5, Dopri5Ode45, Dop853, GaussEntry<1>, GaussEntry<2>, GaussEntry<3>, GaussEntry<4>, Gauss2Sweeps1,
-            Gauss2Sweeps2, Gauss2Tol6, GaussLawsonEntry<8>, Gauss8LawsonSweeps6, LieEuler, Rkmk4, CommutatorFree4> {};
+struct RacedMethods : Types<Rk4, Dopri5, Dopri5Ode45, Dop853, GaussEntry<1>, GaussEntry<2>, GaussEntry<3>,
+                            GaussEntry<4>, Gauss2Sweeps1, Gauss2Sweeps2, Gauss2Tol6, GaussLawsonEntry<8>,
+                            Gauss8LawsonSweeps6, Gauss8LawsonBalanced, LieEuler, Rkmk4, CommutatorFree4> {};
 
 }  // namespace polhode
