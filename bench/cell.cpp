@@ -246,7 +246,7 @@ PreparedCell prepare(results::Cell cell, double every) {
   return prepared;
 }
 
-FoundReference References::of(PreparedCell const& prepared) {
+FoundReference References::of(PreparedCell const& prepared, double whole) {
   if (!prepared.reference) return {};
   if (std::string const why = prepared.problem->no_reference(); !why.empty()) return {nullptr, why};
   std::shared_ptr<Slot> slot;
@@ -263,7 +263,7 @@ FoundReference References::of(PreparedCell const& prepared) {
     schedule.sample_period = problem->sample_period();
     schedule.output_period = 0;
     try {
-      slot->reference = obtain(prepared.physics, *problem, schedule, committed_);
+      slot->reference = obtain(prepared.physics, *problem, schedule, committed_, whole);
     } catch (Uncertified const& error) {
       slot->why_none = error.what();
     }

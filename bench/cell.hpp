@@ -40,8 +40,9 @@ struct FoundReference {
 class References {
  public:
   explicit References(std::filesystem::path committed) : committed_(std::move(committed)) {}
-  /// Throws ReferenceError if a committed one is damaged or stale.
-  FoundReference of(PreparedCell const& prepared);
+  /// `whole` [s]: a longer horizon whose committed reference serves, too. Throws ReferenceError if a committed one is
+  /// damaged or stale.
+  FoundReference of(PreparedCell const& prepared, double whole = 0);
 
  private:
   struct Slot {

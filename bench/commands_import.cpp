@@ -9,6 +9,7 @@
 #include "bench/cell_flags.hpp"
 #include "bench/commands.hpp"
 #include "bench/import.hpp"
+#include "bench/patience.hpp"
 
 namespace polhode::bench {
 namespace {
@@ -50,7 +51,9 @@ void import(ImportFlags const& flags) {
   TrajectoryTable const table = read_trajectory(flags.file, columns_to_import(prepared));
   cell.t_end = scored_until(table, prepared, flags.cell.has_t_end->count() > 0);
   if (cell.t_end != prepared.cell.t_end) prepared = prepare(cell);
-  auto const [reference, why_none] = References(references_folder()).of(prepared);
+  std::string const making = fmt::format("making the reference of {} in quadruple precision", prepared.cell.problem);
+  auto const [reference, why_none] =
+      patiently(making, [&] { return References(references_folder()).of(prepared, prepared.problem->horizon()); });
   Score score = bench::score(table, prepared, reference.get(), reading);
   for (std::string const& remark : {prepared.problem->warning(), why_none})
     if (!remark.empty()) score.remarks.push_back(remark);

@@ -273,7 +273,7 @@ Certificate certify(results::Cell const& cell, ChosenProblem const& problem, Sch
 void check_fresh(Certificate const& certificate, Reference const& reference, std::filesystem::path const& file) {
   // Round-off of two builds differs: a hundred units in the last place of quadruple precision are no disagreement.
   double const room = std::max(10 * certificate.bar, 1e-30);
-  for (std::size_t k = 0; k < certificate.times.size(); ++k) {
+  for (std::size_t k = 0; k < certificate.times.size() && certificate.times[k] <= reference.t_end(); ++k) {
     double const apart =
         distance_between(certificate.states[k], reference.at(certificate.times[k]), certificate.layout);
     if (apart <= room) continue;
@@ -285,18 +285,23 @@ void check_fresh(Certificate const& certificate, Reference const& reference, std
 }
 
 std::shared_ptr<UsableReference const> obtain(results::Cell const& cell, ChosenProblem const& problem,
-                                              Schedule const& schedule, std::filesystem::path const& folder) {
+                                              Schedule const& schedule, std::filesystem::path const& folder,
+                                              double whole) {
   auto usable = std::make_shared<UsableReference>();
-  usable->id = reference_id(cell);
   usable->reference = Reference::solve(problem, schedule);
-  std::filesystem::path const file = folder / (usable->id + ".json");
-  if (std::filesystem::exists(file)) {
+  results::Cell longer = cell;
+  longer.t_end = whole;
+  for (results::Cell const* known : {&cell, static_cast<results::Cell const*>(&longer)}) {
+    usable->id = reference_id(*known);
+    std::filesystem::path const file = folder / (usable->id + ".json");
+    if (known->t_end < cell.t_end || !std::filesystem::exists(file)) continue;
     Certificate const certificate = load(file);
     check_fresh(certificate, usable->reference, file);
     usable->bar = certificate.bar;
-  } else {
-    usable->bar = certify(cell, problem, schedule, usable->reference).bar;
+    return usable;
   }
+  usable->id = reference_id(cell);
+  usable->bar = certify(cell, problem, schedule, usable->reference).bar;
   return usable;
 }
 

@@ -59,7 +59,7 @@ std::string reference_id(results::Cell const& cell);
 Certificate certify(results::Cell const& cell, ChosenProblem const& problem, Schedule const& schedule,
                     Reference const& reference);
 
-/// Throws ReferenceError if the stored states are further from `reference` than the bar allows.
+/// Throws ReferenceError if the stored states, as far as it goes, are further from `reference` than the bar allows.
 void check_fresh(Certificate const& certificate, Reference const& reference, std::filesystem::path const& file);
 
 /// A reference ready for use, and its bar.
@@ -68,8 +68,10 @@ struct UsableReference {
   double bar = 0;
   Reference reference;
 };
-/// From the committed certificate in `folder` if there is one, else certified on the fly.
+/// From the committed certificate in `folder` if there is one, else certified on the fly. `whole` [s]: that of this
+/// longer horizon serves, too, if there is one: its bar holds for the part.
 std::shared_ptr<UsableReference const> obtain(results::Cell const& cell, ChosenProblem const& problem,
-                                              Schedule const& schedule, std::filesystem::path const& folder);
+                                              Schedule const& schedule, std::filesystem::path const& folder,
+                                              double whole = 0);
 
 }  // namespace polhode::bench

@@ -166,6 +166,7 @@ TEST_F(CliImport, AnyGridAndAnyEnd) {
   Json const until = score(*shared, "own.csv --problem free_body --t-end 19.5");
   EXPECT_EQ(until.at("points"), 40);
   EXPECT_THAT(until.at("remarks").dump(), HasSubstr("61 row(s) after 19.5 s are left out"));
+  EXPECT_EQ(until.at("reference_bar"), plain.at("reference_bar")) << "the committed one of the whole horizon";
 }
 
 TEST_F(CliImport, ATableForPeople) {
