@@ -128,6 +128,7 @@ results::Meta provenance() {
   };
   note("cpu_model", cpu_field("model name"));
   note("cpu_cache", cpu_field("cache size"));
+  note("cpu_mhz", cpu_field("cpu MHz"));  // as it says now: nominal in most virtual machines
   note("cpu_governor", first_line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor"));
   note("load", first_line("/proc/loadavg"));
   note("virtualised", cpu_field("flags").find(" hypervisor") != std::string::npos ? "true" : "false");
