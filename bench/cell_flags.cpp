@@ -32,6 +32,14 @@ CLI::Option* add_number(CLI::App& verb, std::string const& flag, double& value, 
   });
 }
 
+std::uint64_t whole_number(std::string_view name, std::string const& text, std::uint64_t least, std::uint64_t most) {
+  std::uint64_t value = 0;
+  auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || value < least || value > most)
+    throw UsageError(fmt::format("{} = {}: a whole number from {} to {} is wanted", name, quote(text), least, most));
+  return value;
+}
+
 std::pair<std::string, std::vector<double>> parse_setting(std::string const& text) {
   auto const equals = text.find('=');
   if (equals == std::string::npos || equals == 0)

@@ -1,6 +1,7 @@
 #pragma once
 /// The flags with which a command line names a cell, or its physics alone.
 #include <CLI/App.hpp>
+#include <cstdint>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +12,9 @@ namespace polhode::bench {
 
 /// An option that takes a number; CLI11 by itself would read '' as 0.
 CLI::Option* add_number(CLI::App& verb, std::string const& flag, double& value, std::string const& help);
+
+/// The whole number that is the text of flag `name`. Throws UsageError with the range.
+std::uint64_t whole_number(std::string_view name, std::string const& text, std::uint64_t least, std::uint64_t most);
 
 /// Parses "inertia=0.5,0.85,1". Throws UsageError.
 std::pair<std::string, std::vector<double>> parse_setting(std::string const& text);

@@ -70,6 +70,7 @@ void add_commands(CLI::App& app, int& code, Faces const& faces) {
   add_list(app);
   add_run(app, code);
   add_simulate(app, code, faces.plot);
+  add_ensemble(app, code);
   add_reference(app);
   add_check(app, code);
   add_compare(app, code, faces.comparison);

@@ -36,6 +36,8 @@ void add_list(CLI::App& app);
 void add_run(CLI::App& app, int& code);
 /// The verb simulate: one cell.
 void add_simulate(CLI::App& app, int& code, PlotTrajectory const& plot);
+/// The verb ensemble: many samples of one problem.
+void add_ensemble(CLI::App& app, int& code);
 /// The verb compare: two sets of records.
 void add_compare(CLI::App& app, int& code, WriteComparison const& write);
 /// The verb check: expectations and golden columns.

@@ -7,11 +7,13 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <limits>
 #include <memory>
 
 #include "bench/cell.hpp"
 #include "bench/cell_flags.hpp"
 #include "bench/commands.hpp"
+#include "bench/ensemble_job.hpp"
 #include "results/store.hpp"
 
 namespace polhode::bench {
@@ -81,10 +83,35 @@ std::string title_of(results::Cell const& cell) {
                      cell.h ? fmt::format("h = {:g} s", *cell.h) : fmt::format("rtol = {:g}", *cell.rtol));
 }
 
-int run_simulation(CellFlags const& flags, double every, std::string const& out, std::string const& picture,
+/// One sample of an ensemble, by the flags of both.
+struct SampleFlags {
+  std::vector<std::string> disperse;
+  std::string seed = "1", sample;
+  CLI::Option* has_seed = nullptr;
+
+  void add(CLI::App& verb) {
+    verb.add_option("--sample", sample, "Replay this sample of the ensemble with the same --seed and --disperse")
+        ->type_name("INT");
+    has_seed = verb.add_option("--seed", seed, "Of the ensemble")->type_name("INT");
+    verb.add_option("--disperse", disperse, "As of `polhode ensemble`; repeatable")
+        ->type_name("NAME=LAW")
+        ->allow_extra_args(false);
+  }
+  results::Cell in(results::Cell cell) const {
+    if (sample.empty()) {
+      if (!disperse.empty() || has_seed->count() > 0)
+        throw UsageError("--seed and --disperse choose a sample of an ensemble: give --sample, too");
+      return cell;
+    }
+    return sample_cell(std::move(cell), disperse,
+                       whole_number("seed", seed, 0, std::numeric_limits<std::uint64_t>::max()),
+                       std::int64_t(whole_number("sample", sample, 0, std::numeric_limits<std::int64_t>::max())));
+  }
+};
+
+int run_simulation(results::Cell const& cell, double every, std::string const& out, std::string const& picture,
                    PlotTrajectory const& plot) {
   constexpr int run_failed = 4;
-  results::Cell cell = flags.chosen();
   PreparedCell prepared = prepare(cell);
   if (!(every > 0)) {
     double const period = prepared.problem->sample_period();
@@ -123,6 +150,8 @@ void add_simulate(CLI::App& app, int& code, PlotTrajectory const& plot) {
   CLI::App* verb = app.add_subcommand("simulate", "Run one problem with one integrator; the trajectory as CSV");
   flags->add_physics(*verb);
   flags->add_method(*verb);
+  auto const sample = std::make_shared<SampleFlags>();
+  sample->add(*verb);
   CLI::Option* has_every =
       add_number(*verb, "--every", *every, "Output interval [s]; default the sample period, else t_end / 100");
   verb->add_option("--out", *out, "File instead of standard output")->type_name("FILE");
@@ -132,7 +161,7 @@ void add_simulate(CLI::App& app, int& code, PlotTrajectory const& plot) {
     if (has_every->count() > 0) check_positive("every", *every);
     if (!picture->empty() && !picture->ends_with(".svg") && !picture->ends_with(".pdf"))
       throw UsageError(fmt::format("--plot {}: write FILE.svg or FILE.pdf", quote(*picture)));
-    code = run_simulation(*flags, *every, *out, *picture, plot);
+    code = run_simulation(sample->in(flags->chosen()), *every, *out, *picture, plot);
   });
 }
 

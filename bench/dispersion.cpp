@@ -54,7 +54,7 @@ class Reader {
                                                               component_name(parameter, std::size_t(read.component)));
     Distribution const& d = read.distribution;
     read.text = d.kind == Kind::so3 ? fmt::format("{}=so3()", name)
-                                    : fmt::format("{}={}({:.17g},{:.17g})", name, form_of(d.kind).name, d.a, d.b);
+                                    : fmt::format("{}={}({},{})", name, form_of(d.kind).name, d.a, d.b);
     return read;
   }
 
