@@ -11,6 +11,7 @@
 /// Frames as in attitude.hpp: R maps body to inertial components.   P = R^T R_d,  Q = P^T
 #include <array>
 
+#include "problems/angle.hpp"
 #include "problems/controller.hpp"
 #include "problems/linear.hpp"
 #include "problems/mrp.hpp"
@@ -104,24 +105,6 @@ struct CooperativeErrors {
   /// cos(theta), theta the angle to the command.
   S cosine() const { return Real<S>(0.5) * (trace() - S(1.0)); }
 };
-
-/// theta over the sine of theta, from sine^2 = z and cosine = c. Of a matrix that has drifted sine and cosine are both
-/// too large or too small: theta is that of their ratio. Below 7 deg by the series of 4 atan(tan(theta / 4)), which is
-/// smooth through 0.
-template <class S>
-S angle_over_sine(S const& z, S const& c) {
-  using R = Real<S>;
-  if (!(S(0.0) < c) || S(0.015) * c * c < z) {
-    S const sine = sqrt(z);
-    return atan2(sine, c) / sine;
-  }
-  S const one(1.0), half = one / (sqrt(z + c * c) + c);          // tan(theta / 2) over the sine
-  S const quarter = half / (one + sqrt(one + z * half * half));  // tan(theta / 4) over the sine
-  S const y = z * quarter * quarter;                             // below 1e-3
-  S series(0.0);
-  for (int k = 11; k >= 0; --k) series = S(R(1.0) / R(double(2 * k + 1))) - y * series;
-  return R(4.0) * quarter * series;
-}
 
 // ---- Surfaces and laws ----------------------------------------------------------------------------------------------
 

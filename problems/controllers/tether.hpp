@@ -3,7 +3,7 @@
 /// Source: Xu et al. (2017), Applied Mathematics and Mechanics 38(12), 1309, eqs. (17)-(25)
 #include <algorithm>
 
-#include "problems/arctangent.hpp"
+#include "problems/angle.hpp"
 #include "problems/controller.hpp"
 #include "problems/lanes_gather.hpp"
 
@@ -83,10 +83,7 @@ class TetherController {
       tether_ = (S(law_.arm) * tension_) * at.axis;  // F d x r~
     }
     if (law_.actuators != TetherCase::none) {
-      auto const turned = S(0.0) < at.sine;
-      S const sine = select(turned, at.sine, S(1.0));
-      S const scale = select(turned, S(S(law_.k_pu) * at.alpha / sine), S(0.0));
-      thrust_ = clipped(scale * at.axis - S(law_.k_du) * omega);
+      thrust_ = clipped((S(law_.k_pu) * at.alpha_over_sine) * at.axis - S(law_.k_du) * omega);
     }
     if (law_.actuators == TetherCase::switched) {
       tension_ = select(below, S(0.0), tension_);
@@ -115,22 +112,14 @@ class TetherController {
  private:
   struct Geometry {
     Vec3<S> axis;  ///< d~ x r~
-    S sine, alpha;
+    S alpha, alpha_over_sine;
   };
+  /// d = (-1, 0, 0), and so is r in the orbital frame, for the platform lies at (-200, 0, 0) m.
   static Geometry geometry(Quat<S> const& q) {
-    Vec3<S> const d{S(-1.0), S(0.0), S(0.0)};
-    Vec3<S> const r = to_body(q, d);  // the platform lies at (-200, 0, 0) m in the orbital frame: along -x, too
-    Vec3<S> const axis = cross(d, r);
-    S const sine_squared = dot(axis, axis);
-    S const sine = root(sine_squared);
-    return {axis, sine, arctangent(sine, dot(d, r))};
-  }
-  /// A series has no square root at 0.
-  static S root(S const& square) {
-    if constexpr (std::same_as<decltype(square < square), bool>)
-      return S(0.0) < square ? S(sqrt(square)) : S(0.0);
-    else
-      return sqrt(square);
+    Mat3<S> const m = matrix(q);
+    S const sine_squared = m.e3.x * m.e3.x + m.e2.x * m.e2.x;
+    auto const [alpha, over_sine] = angle_and_sine(sine_squared, m.e1.x);
+    return {{S(0.0), S(-m.e3.x), m.e2.x}, alpha, over_sine};
   }
   template <class Mask>
   static Vec3<S> chosen(Mask const& mask, Vec3<S> const& a, Vec3<S> const& b) {
