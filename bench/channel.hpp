@@ -16,6 +16,7 @@ struct Message {
 /// What went through a channel, both ways.
 struct Traffic {
   std::int64_t messages = 0, bytes = 0;
+  double cpu_time = 0;  ///< of the thread that listens, while items were dealt out [s]
 };
 
 /// Messages arrive whole, and those of one sender to one receiver in order. Used by one thread.

@@ -106,8 +106,14 @@ std::string script_of(std::string const& name, RunOptions const& options, SlurmF
 
 // ---- run ------------------------------------------------------------------------------------------------------------
 
+/// Whether the manager keeps up, and what a network has to carry.
+void say(int ranks, Traffic const& traffic) {
+  fmt::print(stderr, "polhode: {} ranks: the manager exchanged {} messages, {} bytes, in {:.4f} s of processor time\n",
+             ranks, traffic.messages, traffic.bytes, traffic.cpu_time);
+}
+
 /// Returns the exit code.
-int run_on_ranks(std::string const& name, RunOptions const& options) {
+int run_on_ranks(std::string const& name, RunOptions const& options, bool traffic) {
   Ranks ranks = Ranks::of_this_job();
   std::filesystem::path file;
   Suite suite;
@@ -118,6 +124,7 @@ int run_on_ranks(std::string const& name, RunOptions const& options) {
   RunSummary const summary = run_in_file(file, suite, options, ranks);
   if (options.dry_run || !ranks.manager()) return 0;
   say(summary);
+  if (traffic) say(ranks.size(), ranks.traffic());
   constexpr int interrupted = 130, run_failed = 4;
   if (summary.interrupted) return interrupted;
   return summary.died > 0 ? run_failed : 0;
@@ -145,6 +152,8 @@ void add_run(CLI::App& app, int& code) {
   auto const threads = std::make_shared<double>(0);
   CLI::Option* has_threads =
       add_number(*verb, "--threads", *threads, "Of the accuracy pass; default one per processor")->type_name("INT");
+  auto const traffic = std::make_shared<bool>(false);
+  verb->add_flag("--traffic", *traffic, "Under mpirun: say on stderr how much the ranks had to tell each other");
   auto const slurm = std::make_shared<SlurmFlags>();
   CLI::Option* print = verb->add_flag("--print-slurm", slurm->print,
                                       "Print a script for sbatch instead: an array of --shards, or --ranks of one job");
@@ -163,7 +172,7 @@ void add_run(CLI::App& app, int& code) {
     if (has_ranks->count() > 0) part_count("--ranks", slurm->ranks);
     if (slurm->print) return fmt::print("{}", script_of(*name, *options, *slurm));
     interruptible();
-    code = run_on_ranks(*name, *options);
+    code = run_on_ranks(*name, *options, *traffic);
   });
 }
 

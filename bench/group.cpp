@@ -20,15 +20,18 @@ void Group::run() {
   else
     measure_all();
   if (around_.interrupted) return;
-  if (around_.timing.enabled) {
+  if (around_.timing.enabled && !around_.at_once) {
     around_.progress.say(name + ": timing");
     time_all();
   }
   if (around_.interrupted) return;
-  for (Task* task : tasks_) {
-    for (results::Series const& series : task->result.series) around_.writer.series(series);
-    around_.writer.run(task->result.record);
-  }
+  if (around_.at_once) return;
+  for (Task const* task : tasks_) record(*task);
+}
+
+void Group::record(Task const& task) {
+  for (results::Series const& series : task.result.series) around_.writer.series(series);
+  around_.writer.run(task.result.record);
 }
 
 void Group::measure_all() {
@@ -45,6 +48,8 @@ void Group::measure_all() {
           around_.writer.begin(task.id, build_id());
         }
         task.result = measured(task);
+        std::lock_guard const lock(mutex);
+        if (around_.at_once) record(task);
       } catch (Interrupted const&) {
         return;
       } catch (...) {

@@ -28,6 +28,7 @@ struct Task {
 struct Surroundings {
   RunOptions options;  ///< with its threads settled
   Timing timing;
+  bool at_once;  ///< each cell is recorded when it is measured, in whatever order; nothing is timed then
   References& references;
   results::Writer& writer;
   Progress& progress;
@@ -45,6 +46,7 @@ class Group {
   void measure_all();
   void measure_apart();
   CellResult measured(Task const& task) const;
+  void record(Task const& task);
   results::Record died(Task const& task, Ended const& ended) const;
   void time_all();
 

@@ -1,6 +1,7 @@
 #include "bench/ranks.hpp"
 
 #include <cstdlib>
+#include <ctime>
 #include <initializer_list>
 #include <map>
 #include <optional>
@@ -28,6 +29,13 @@ std::optional<int> rank_by_launcher() {
 }
 int size_by_launcher() {
   return first_of({"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_NTASKS"}).value_or(1);
+}
+
+/// Processor time of this thread [s].
+double thread_time() {
+  timespec time{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
 }
 
 }  // namespace
@@ -102,11 +110,24 @@ void Ranks::distribute(std::int64_t count, Work const& work, Deliver const& deli
       std::string bytes = work(k);
       if (!stopping) deliver(k, std::move(bytes));
     }
-  } else if (manager()) {
-    end_for_all(deal_out(*channel_, count, work, deliver, stopping));
-  } else if (!serve(*channel_, work, stopping)) {
-    leave_quietly();
+    return;
   }
+  double const start = thread_time();
+  std::exception_ptr failure;
+  bool goes_on = true;
+  if (manager())
+    failure = deal_out(*channel_, count, work, deliver, stopping);
+  else
+    goes_on = serve(*channel_, work, stopping);
+  cpu_time_ += thread_time() - start;
+  if (manager()) return end_for_all(failure);
+  if (!goes_on) leave_quietly();
+}
+
+Traffic Ranks::traffic() const {
+  Traffic traffic = channel_ ? channel_->traffic() : Traffic{};
+  traffic.cpu_time = cpu_time_;
+  return traffic;
 }
 
 std::string Ranks::word_of_manager() {

@@ -39,8 +39,8 @@ class Ranks {
   bool alone() const { return size() == 1; }
   /// How many of them, this one included, share this machine.
   int on_this_node() const { return channel_ ? channel_->on_this_node() : 1; }
-  /// What this rank sent and received.
-  Traffic traffic() const { return channel_ ? channel_->traffic() : Traffic{}; }
+  /// What this rank sent and received, and what dealing it cost: who manages too many ranks has no time for more.
+  Traffic traffic() const;
 
   /// Every rank does `step`; returns when all have.
   void together(std::function<void()> const& step);
@@ -65,6 +65,7 @@ class Ranks {
   std::unique_ptr<Channel> channel_;
   int unwinding_;                ///< exceptions in flight at the start
   bool ended_together_ = false;  ///< an exception is known to all
+  double cpu_time_ = 0;          ///< see Traffic
 };
 
 /// Whether mpirun or srun started this process: its streams then go through theirs, whatever they seem to be.

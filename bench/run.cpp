@@ -235,15 +235,14 @@ class SuiteRun {
     tasks_ = std::move(left);
   }
 
-  /// The groups. Several ranks get them in parts, small enough to keep all busy to the end.
+  /// The groups. Of several ranks each gets at least four packs on average, so that all are busy to the end; a group
+  /// is split for no more than that, as each rank that works on it makes its reference.
   std::vector<std::vector<Task*>> packed() {
     std::vector<std::vector<Task*>> packs;
     std::map<std::string, std::size_t> pack_of;  // by what its cells have in common
-    auto const ranks = std::size_t(ranks_.size());
-    constexpr std::size_t most = 16;  // what a rank that dies can lose
-    std::size_t const limit =
-        ranks_.alone() ? tasks_.size()
-                       : std::clamp<std::size_t>(tasks_.size() / (8 * ranks), 1, most) * std::size_t(options_.threads);
+    std::size_t const wanted = 4 * std::size_t(ranks_.size());
+    std::size_t const fair = std::max((tasks_.size() + wanted - 1) / wanted, std::size_t(options_.threads));
+    std::size_t const limit = ranks_.alone() ? tasks_.size() : fair;
     for (Task& task : tasks_) {
       auto const [place, is_new] = pack_of.try_emplace(reference_subject(task.prepared.physics), packs.size());
       if (!is_new && packs[place->second].size() >= limit) place->second = packs.size();
@@ -263,7 +262,7 @@ class SuiteRun {
     auto const work = [&](std::int64_t k) {
       if (!writer) writer.emplace(file_of_records(), meta());
       std::vector<Task*> const& pack = packs[std::size_t(k)];
-      Group(pack, {options_, timing_, references, *writer, cells, interrupted}).run();
+      Group(pack, {options_, timing_, !ranks_.alone(), references, *writer, cells, interrupted}).run();
       return to_text(counted(pack));
     };
     auto const deliver = [&](std::int64_t k, std::string const& counts) {
