@@ -6,12 +6,13 @@
 /// quadrature. It falls as h^(s+1), the method's error as h^(2s+1), so the estimate is held to
 /// 0.1 tol^((s+1)/(2s)): errors then are in proportion to the tolerance that was asked for.
 ///
-/// Sources: Hairer & Wanner, Solving ODEs II, IV.8 (estimate; the tolerance as in their code RADAU); Hairer, Norsett &
-/// Wanner, Solving ODEs I, II.4 (norm, starting step, controller); Gustafsson (1991), ACM TOMS 17, 533.
+/// Sources: Hairer & Wanner, Solving ODEs II, IV.8 (estimate; the tolerance as in their code RADAU); the norm and the
+/// law of the step size: step_size.hpp.
 #include <algorithm>
 #include <cmath>
 
 #include "integrators/gauss_stages.hpp"
+#include "integrators/step_size.hpp"
 
 namespace polhode {
 
@@ -52,6 +53,7 @@ class GaussControlled {
         problem_(&problem),
         control_(inner(control, stages)),
         policy_(policy),
+        size_({.most = 5, .memory = 0.2 / (stages + 1), .failed = 0.2}, stages + 1),
         method_(stages, shape_of(problem)) {
     Point<M> const shape = shape_of(problem);
     memory_.fit(shape);
@@ -70,57 +72,48 @@ class GaussControlled {
   Status step(Point<M>& x, R& t, R t_end) {
     slope(*problem_, S(t), x, method_.velocity(), method_.start_slope());
     if (!all_finite(method_.start_slope())) return Status::diverged;
-    if (!(R(0.0) < h_)) h_ = starting_step(x, t, t_end - t);
-    bool rejected_before = false, unsolved = false;
-    R const reach(policy_ == NormPolicy::relaxation ? relaxed_reach : 1 + 1e-10);
+    if (!size_.known()) start(x, t, t_end - t);
+    bool unsolved = false;
+    double const reach = policy_ == NormPolicy::relaxation ? relaxed_reach : 1 + 1e-10;
     R relaxed(0.0);  // gamma - 1 of a step that must land, and is taken again for it
-    for (std::int64_t trial = 0; trial < most; ++trial) {
-      R const left = t_end - t;
-      bool const last = h_ * reach >= left;
-      R const h = last ? left / (R(1.0) + relaxed) : h_;
-      if (double(h) <= 10 * std::numeric_limits<double>::epsilon() * std::fabs(double(t)) && !last)
-        return unsolved ? Status::nonlinear_fail : Status::step_underflow;
+    for (std::int64_t trials = 0; trials < most; ++trials) {
+      auto const trial = size_.trial(t, t_end, reach, relaxed);
+      R const h = trial.h;
+      if (size_.underflows(trial, t)) return unsolved ? Status::nonlinear_fail : Status::step_underflow;
       trial_ = x;
       carry_ = memory_.carry;
       method_.step(*problem_, S(t), h, trial_, memory_, true);
       unsolved = memory_.unconverged;
-      double const size = unsolved ? std::numeric_limits<double>::infinity() : error_size(h, x);
-      double const exponent = 1.0 / (stages_ + 1), memory = 0.2 * exponent;
-      if (size <= 1) {
-        R gamma_less_one(0.0);
-        if constexpr (OneFlatQuaternion<M>)
-          if (policy_ == NormPolicy::relaxation) [[unlikely]] {
-            gamma_less_one = relaxation_less_one<M>(x, trial_);
-            bool const possible = can_relax(gamma_less_one);
-            if (!possible || (last && relaxed == R(0.0) && gamma_less_one != R(0.0))) {
-              take_back();
-              if (possible) {
-                relaxed = gamma_less_one;
-              } else {
-                ++work_.rejected;
-                rejected_before = true;
-                h_ = h * R(0.5);
-              }
-              continue;
-            }
-          }
-        double const factor = std::pow(size, exponent - 0.75 * memory) / std::pow(last_size_, memory);
-        double const growth = std::clamp(0.9 / std::max(factor, 1e-10), 0.2, 5.0);
-        // A step cut short by t_end says little about the next one.
-        if (!last || h == h_ || growth < 1) h_ = h * R(rejected_before ? std::min(growth, 1.0) : growth);
-        last_size_ = std::max(size, 1e-4);
-        if (policy_ != NormPolicy::none) projections_.template apply<M>(x, trial_, policy_, double(h), gamma_less_one);
-        std::swap(x, trial_);
-        t = last ? t_end : R(t + h + gamma_less_one * h);
-        ++work_.steps;
-        return Status::ok;
+      double const error = unsolved ? std::numeric_limits<double>::infinity() : square_of_error(h, x);
+      if (!size_.accepts(error)) {
+        ++work_.rejected;
+        if (!all_finite(x)) return Status::diverged;
+        take_back();
+        size_.reject(trial, error);
+        continue;
       }
-      ++work_.rejected;
-      if (!all_finite(x)) return Status::diverged;
-      rejected_before = true;
-      take_back();
-      double const shrink = std::isfinite(size) ? 0.9 / std::pow(size, exponent - 0.75 * memory) : 0.0;
-      h_ = h * R(std::max(0.2, shrink));
+      R gamma_less_one(0.0);
+      if constexpr (OneFlatQuaternion<M>)
+        if (policy_ == NormPolicy::relaxation) [[unlikely]] {
+          gamma_less_one = relaxation_less_one<M>(x, trial_);
+          bool const possible = can_relax(gamma_less_one);
+          if (!possible || (trial.last && relaxed == R(0.0) && gamma_less_one != R(0.0))) {
+            take_back();
+            if (possible) {
+              relaxed = gamma_less_one;
+            } else {
+              ++work_.rejected;
+              size_.reject_for(trial, 0.5);
+            }
+            continue;
+          }
+        }
+      size_.accept(trial, error);
+      if (policy_ != NormPolicy::none) projections_.template apply<M>(x, trial_, policy_, double(h), gamma_less_one);
+      std::swap(x, trial_);
+      t = trial.last ? t_end : R(t + h + gamma_less_one * h);
+      ++work_.steps;
+      return Status::ok;
     }
     return Status::max_steps;
   }
@@ -128,12 +121,12 @@ class GaussControlled {
   /// did.
   void restart() {
     memory_.restart();
-    last_size_ = 1e-4;
+    size_.restart();
   }
   /// A new run: the step size is forgotten, too.
   void begin() {
     restart();
-    h_ = R(0.0);
+    size_.forget();
   }
   Work work() const {
     Work work = work_;
@@ -161,14 +154,15 @@ class GaussControlled {
     double const rtol = 0.1 * std::pow(asked.rtol, exponent);
     return {rtol, rtol * asked.atol / asked.rtol};
   }
-  /// Of the step from x to trial_.
-  double error_size(R const& h, Point<M> const& x) {
+  /// Of the step from x to trial_, in units of what is allowed.
+  double square_of_error(R const& h, Point<M> const& x) {
     method_.slope_by_stages(error_);
     Chart<M>::each([&](S& e, S const& slope) { e = h * slope - e; }, error_, method_.start_slope());
-    return norm(error_, x, trial_) / ((stages_ + 1) * (stages_ + 1));
+    double const per_gamma = (stages_ + 1) * (stages_ + 1);
+    return mean_square(error_, x, trial_) / (per_gamma * per_gamma);
   }
-  /// RMS of k against the tolerance at x and y.
-  double norm(Chart<M> const& k, Point<M> const& x, Point<M> const& y) const {
+  /// Of k against the tolerance at x and y.
+  double mean_square(Chart<M> const& k, Point<M> const& x, Point<M> const& y) const {
     double sum = 0;
     for_each_body<M>(x, [&](auto const& at) {
       Chart<Body>::each(
@@ -179,35 +173,31 @@ class GaussControlled {
           },
           at(k), ChartScale<Body>::of(at(x)), ChartScale<Body>::of(at(y)));
     });
-    return std::sqrt(sum / size_of(k));
+    return sum / size_of(k);
   }
-  /// Hairer, Norsett & Wanner I, II.4, "starting step size".
-  R starting_step(Point<M> const& x, R const& t, R const& longest) {
+  /// The first step from x.
+  void start(Point<M> const& x, R const& t, R const& longest) {
     Chart<M> const& slope_here = method_.start_slope();
+    auto const norm = [&](Chart<M> const& k) { return std::sqrt(mean_square(k, x, x)); };
     fill(carry_, 0.0);
     for_each_body<M>(x, [&](auto const& at) { at(carry_) = ChartScale<Body>::of(at(x)); });
-    double const size = norm(carry_, x, x), speed = norm(slope_here, x, x);
-    double h = size < 1e-5 || speed < 1e-5 ? 1e-6 : 0.01 * size / speed;
-    h = std::min(h, double(longest));
+    double const speed = norm(slope_here), euler = size_.euler_step(norm(carry_), speed, longest);
     displace<M>(
-        x, [&](auto& u, auto const& at) { add(u, R(h), at(slope_here)); }, error_, trial_);
-    slope(*problem_, S(t + R(h)), trial_, method_.velocity(), error_);
+        x, [&](auto& u, auto const& at) { add(u, R(euler), at(slope_here)); }, error_, trial_);
+    slope(*problem_, S(t + R(euler)), trial_, method_.velocity(), error_);
     add(error_, R(-1.0), slope_here);
-    double const greatest = std::max(speed, norm(error_, x, x) / h);
-    double const h1 = greatest <= 1e-15 ? std::max(1e-6, h * 1e-3) : std::pow(0.01 / greatest, 1.0 / (stages_ + 1));
-    return R(std::min({100 * h, h1, double(longest)}));
+    size_.start(euler, std::max(speed, norm(error_) / euler), longest);
   }
 
   int stages_;
   P const* problem_;
   Adaptive control_;
   NormPolicy policy_;
+  StepSize<R> size_;
   GaussMethod<M> method_;
   GaussMemory<M> memory_;
   Point<M> trial_;
   Chart<M> error_, carry_;
-  R h_ = R(0.0);
-  double last_size_ = 1e-4;
   Work work_;
   Projections projections_;
 };
