@@ -62,7 +62,8 @@ file(WRITE ${project}/commands.sh "${text}")
 
 # ---- Do as they say -------------------------------------------------------------------------------------------------
 execute_process(COMMAND ${CMAKE_COMMAND} -E env CMAKE_PREFIX_PATH=${prefix} CMAKE_GENERATOR=${generator} CXX=${compiler}
-                        CMAKE_CXX_COMPILER_LAUNCHER=${launcher} bash -e -x commands.sh
+                        CMAKE_CXX_COMPILER_LAUNCHER=${launcher} CCACHE_BASEDIR=${work} CCACHE_NOHASHDIR=1
+                        bash -e -x commands.sh
                 WORKING_DIRECTORY ${project} OUTPUT_VARIABLE output ECHO_OUTPUT_VARIABLE COMMAND_ERROR_IS_FATAL ANY)
 
 # `text` holds what `pattern` matches, or all ends.
