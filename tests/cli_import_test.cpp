@@ -1,11 +1,9 @@
-// `import` and `doctor` as a user meets them. Trajectories of SciPy are scored as what they are: their error is
-// computed by themselves, too, against a much finer solution.
+// `import` and `doctor` as a user meets them.
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cctype>
 #include <functional>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <sstream>
@@ -221,82 +219,6 @@ TEST_F(CliImport, AFullDiskIsNoSuccess) {
   Result const result = process.finish();
   EXPECT_EQ(result.code, 5);
   EXPECT_THAT(result.err, HasSubstr("No space left on device"));
-}
-
-// ---- SciPy ----------------------------------------------------------------------------------------------------------
-
-/// Solves the free body by RK45 and DOP853, writes them in our columns, and says what errors they have against DOP853
-/// at 3e-14, which is good to 1e-13 rad.
-constexpr char const* script = R"(
-import json, sys
-import numpy as np
-from scipy.integrate import solve_ivp
-
-J, q0, w0 = (np.array(x) for x in json.loads(sys.argv[1]))
-q0 /= np.linalg.norm(q0)
-
-def field(t, y):
-    (x, yy, z, s), w = y[:4], y[4:]
-    q = 0.5 * np.array([s*w[0] + yy*w[2] - z*w[1], s*w[1] + z*w[0] - x*w[2], s*w[2] + x*w[1] - yy*w[0],
-                        -x*w[0] - yy*w[1] - z*w[2]])
-    return np.concatenate([q, np.cross(J*w, w)/J])
-
-def angle(p, q):
-    v = p[3]*q[:3] - q[3]*p[:3] - np.cross(p[:3], q[:3])
-    return 2*np.arctan2(np.linalg.norm(v), abs(p @ q))
-
-t = np.linspace(0, 50, 401)
-def solve(method, rtol):
-    return solve_ivp(field, (0, 50), np.concatenate([q0, w0]), method, t, rtol=rtol, atol=rtol/100).y.T
-tight = solve("DOP853", 3e-14)
-largest = max(np.linalg.norm(y[4:]) for y in tight)
-expected = {}
-for method, rtol in [("RK45", 1e-6), ("DOP853", 1e-8)]:
-    y = solve(method, rtol)
-    np.savetxt(method + ".csv", np.column_stack([t, y]), "%+.17e", ",", header="t,q1,q2,q3,q4,wx,wy,wz", comments="")
-    energy = 0.5*np.sum(J*y[:, 4:]**2, 1)
-    momentum = np.linalg.norm(J*y[:, 4:], axis=1)
-    angles = [angle(a[:4], b[:4]) for a, b in zip(tight, y)]
-    expected[method] = {
-        "attitude_error_max": max(angles), "attitude_error_end": angles[-1],
-        "rate_error_max": max(np.linalg.norm(a[4:] - b[4:]) for a, b in zip(tight, y))/largest,
-        "norm_drift_max": np.max(np.abs(np.sum(y[:, :4]**2, 1) - 1)),
-        "energy_drift_max": np.max(np.abs(energy/energy[0] - 1)),
-        "momentum_drift_max": np.max(np.abs(momentum/momentum[0] - 1))}
-json.dump(expected, open("expected.json", "w"))
-)";
-
-/// A Python that has SciPy: the system's, or that of the path. Empty if there is none.
-std::string python_with_scipy() {
-  for (std::string const python : {"/usr/bin/python3", "python3"})
-    if (std::system((python + " -c 'import scipy.integrate' >/dev/null 2>&1").c_str()) == 0) return python;
-  return "";
-}
-
-TEST(CliImportScipy, ItsErrorsAreTheOnesItHas) {
-  std::string const python = python_with_scipy();
-  if (python.empty()) GTEST_SKIP() << "no python3 with SciPy (Debian: python3-scipy)";
-  Folder folder;
-  Json const problems = Json::parse(polhode(folder, "list problems --json").out);
-  std::map<std::string, Json> defaults;
-  for (Json const& problem : problems)
-    if (problem.at("name") == "free_body")
-      for (Json const& parameter : problem.at("parameters")) defaults[parameter.at("name")] = parameter.at("default");
-  folder.write("solve.py", script);
-  std::string const data = Json{defaults.at("inertia"), defaults.at("q0"), defaults.at("omega0")}.dump();
-  ASSERT_EQ(std::system(("cd " + folder.path.string() + " && " + python + " solve.py '" + data + "'").c_str()), 0);
-  Json const expected = Json::parse(text_of(folder.path / "expected.json"));
-  for (auto const& [method, errors] : expected.items()) {
-    Json const json = score(folder, method + ".csv --problem free_body");
-    EXPECT_EQ(json.at("status"), "ok");
-    EXPECT_EQ(json.at("points"), 401);
-    for (auto const& [key, error] : errors.items()) {
-      double const theirs = error, ours = json.at(key);
-      EXPECT_GT(theirs, 1e-12) << method << " " << key << ": too small to compare";
-      EXPECT_NEAR(ours, theirs, 0.01 * theirs) << method << " " << key;
-    }
-  }
-  EXPECT_GT(expected.at("RK45").at("attitude_error_max"), expected.at("DOP853").at("attitude_error_max"));
 }
 
 // ---- doctor ---------------------------------------------------------------------------------------------------------
