@@ -142,6 +142,16 @@ TEST(SpeedSection, ALossIsARowAndASentenceLikeAWin) {
   EXPECT_TRUE(contains(text, "| governor | not told |"));
 }
 
+TEST(SpeedSection, AClosedFormStandsBesideTheBestRival) {
+  Folder const folder;
+  Contents c = race(2);
+  c.records.push_back(timed("exact", 50, 1e-15, 1e-7));
+  c.records.push_back(timed("exact", 25, 1e-15, 2e-7));
+  std::string const text = markdown_of(c, folder.path);
+  EXPECT_TRUE(contains(text, "| free_body, 50 s | exact (quaternion) | 1e-15 | 100 ns | odeint_rk4 | 1e-12 | 2 ms |"))
+      << "interpolated: 2 * 1e-6 / 1e-3 s";
+}
+
 TEST(SpeedSection, TheTablesHoldTheRecordsNumbers) {
   Folder const folder;
   Contents c = race(2);
