@@ -143,11 +143,8 @@ struct LawsonStep {
     double const off = knows ? 0.25 * memory.damped_for : 0.0;
     if (shifts && !(std::fabs(damped - memory.damped_for) <= off)) make_damped(table, damped, memory);
 
-    // The frame at the stages: half-angles up to a few radians.
     L const turning = sqrt(dot(mean, mean) + 1e-300);
-    detail::SinCosLanes<s, bytes> const half(0.5 * (turning * hc));
-    V const axis = (1.0 / turning) * mean;
-    Q const e{half.sin * axis.x, half.sin * axis.y, half.sin * axis.z, half.cos};
+    Q const e = frame_of(mean, turning, hc);
     Mat3<L> const full = matrix(e), turn{0.5 * full.e1, 0.5 * full.e2, 0.5 * full.e3};
 
     Columns mu;  // in registers
@@ -174,7 +171,7 @@ struct LawsonStep {
     double before = 1e300;
     int sweep = 0;
     for (; sweep < most;) {
-      auto const v = field(stage_times, typename RigidBody<FlatQuaternion<L>>::Point{p * e, w});
+      auto const v = field(stage_times, typename RigidBody<FlatQuaternion<L>>::Point{product(p, e), w});
       dw = v.second;
       V w_next;
       if (shifts) [[unlikely]] {
@@ -220,10 +217,11 @@ struct LawsonStep {
     for (auto& row : Kp) (hb * L::load(row)).store(row);
     Quat<double> const moved{x.first.x + total(Kp[0]), x.first.y + total(Kp[1]), x.first.z + total(Kp[2]),
                              x.first.w + total(Kp[3])};
-    // Nodes are symmetric: the first angle and the last are the whole turn.
-    double const s1 = half.sin[0], s2 = half.sin[s - 1], c1 = half.cos[0], c2 = half.cos[s - 1];
-    double const sine = s1 * c2 + c1 * s2;
-    Quat<double> const end{sine * axis.x[0], sine * axis.y[0], sine * axis.z[0], c1 * c2 - s1 * s2};
+    // Nodes are symmetric: the first turn and the last are the whole.
+    double const c1 = e.w[0], c2 = e.w[s - 1];
+    auto const sine = [&](L const& part) POLHODE_LAMBDA { return part[0] * c2 + c1 * part[s - 1]; };
+    double const cosine = c1 * c2 - ((e.x[0] * e.x[s - 1] + e.y[0] * e.y[s - 1]) + e.z[0] * e.z[s - 1]);
+    Quat<double> const end{sine(e.x), sine(e.y), sine(e.z), cosine};
     // What rounding leaves of |end| = 1 would be the same every step: it is taken out.
     double const shrink = 0.5 * norm_excess(end);
     Quat<double> const turned = moved * end;
@@ -240,6 +238,43 @@ struct LawsonStep {
   }
 
  private:
+  /// Turns at rate `mean` for the times hc: half-angles up to pi/2 by Taylor's series in their squares, which are not
+  /// waited for as long as sin and cos; farther ones by those.
+  static POLHODE_INLINE Q frame_of(V const& mean, L const& turning, L const& hc) {
+    L const half = 0.5 * hc, z = (half * half) * dot(mean, mean);
+    if (z[s - 1] < 2.5) [[likely]] {
+      L const z2 = z * z, z4 = z2 * z2, z8 = z4 * z4;
+      std::array<L, 3> const powers{z2, z4, z8};
+      L const scale = half * series<1, 0, 12>(z, powers);
+      return {scale * mean.x, scale * mean.y, scale * mean.z, series<0, 0, 12>(z, powers)};
+    }
+    detail::SinCosLanes<s, bytes> const far(turning * half);
+    L const scale = far.sin / turning;
+    return {scale * mean.x, scale * mean.y, scale * mean.z, far.cos};
+  }
+  /// sum_k (-z)^k / (2k + odd)! from k = first on, `count` terms over z^first, by halves.
+  template <int odd, int first, int count>
+  static POLHODE_INLINE L series(L const& z, std::array<L, 3> const& powers) {
+    constexpr auto coefficient = [](int k) {
+      double c = 1;
+      for (int i = 2; i <= 2 * k + odd; ++i) c /= i;
+      return k % 2 == 0 ? c : -c;
+    };
+    if constexpr (count == 2) {
+      return coefficient(first) + coefficient(first + 1) * z;
+    } else {
+      constexpr int low = count > 8 ? 8 : count / 2;
+      return series<odd, first, low>(z, powers) + powers[low == 2   ? 0
+                                                         : low == 4 ? 1
+                                                                    : 2] *
+                                                      series<odd, first + low, count - low>(z, powers);
+    }
+  }
+  /// p e, its sums by halves.
+  static POLHODE_INLINE Q product(Q const& p, Q const& e) {
+    return {(p.w * e.x + p.x * e.w) + (p.y * e.z - p.z * e.y), (p.w * e.y + p.y * e.w) + (p.z * e.x - p.x * e.z),
+            (p.w * e.z + p.z * e.w) + (p.x * e.y - p.y * e.x), (p.w * e.w - p.x * e.x) - (p.y * e.y + p.z * e.z)};
+  }
   template <class T>
   static POLHODE_INLINE Vec3<T> as_vector(std::array<T, 3> const& a) {
     return {a[0], a[1], a[2]};

@@ -107,7 +107,8 @@ TEST(GaussLanes, KeepNormEnergyAndMomentumToRoundOff) {
       run(GaussLawson<4>{}.bind(field, FixedStep{1}, NormPolicy::none));
     else
       run(GaussLawson<8>{}.bind(field, FixedStep{1}, NormPolicy::none));
-    EXPECT_LT(std::fabs(dot(x.first, x.first) - 1), 3e-14) << stages;
+    // A random walk: over 34 step sizes its rms was 1.6e-14, its greatest value 4.5e-14.
+    EXPECT_LT(std::fabs(dot(x.first, x.first) - 1), 6e-14) << stages;
     EXPECT_LT(std::fabs(energy(x) / energy(start) - 1), 1e-14) << stages;
     EXPECT_LT(std::fabs(momentum(x) / momentum(start) - 1), 1e-14) << stages;
   }
