@@ -37,7 +37,7 @@ endif()
 
 # ---- Put the blocks in place ----------------------------------------------------------------------------------------
 # The code block of README that follows the comment <!-- NAME -->.
-function(block readme name result)
+function(code_block readme name result)
   file(READ ${sources}/${readme} text)
   set(opening "<!-- ${name} -->\n```")
   string(FIND "${text}" "${opening}" start)
@@ -51,13 +51,13 @@ function(block readme name result)
   set(${result} "${text}\n" PARENT_SCOPE)
 endfunction()
 foreach(name IN ITEMS heun.hpp plugin/CMakeLists.txt plugin/mine.toml)
-  block(integrators/README.md tests/consumer/${name} text)
+  code_block(integrators/README.md tests/consumer/${name} text)
   cmake_path(GET name FILENAME file)
   file(WRITE ${project}/${file} "${text}")
 endforeach()
-block(problems/README.md tests/consumer/damped_body.hpp text)
+code_block(problems/README.md tests/consumer/damped_body.hpp text)
 file(WRITE ${project}/damped_body.hpp "${text}")
-block(integrators/README.md commands text)
+code_block(integrators/README.md commands text)
 file(WRITE ${project}/commands.sh "${text}")
 
 # ---- Do as they say -------------------------------------------------------------------------------------------------
