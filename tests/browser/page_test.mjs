@@ -78,6 +78,11 @@ async function show(page, id) {
   await panel.locator('.plot .main-svg, .plot canvas, table, .remark:not([hidden])').first().waitFor({state: 'attached'});
   return panel;
 }
+/** Draws all panels at once, as before printing. */
+async function showAll(page) {
+  await page.evaluate(() => window.dispatchEvent(new Event('beforeprint')));
+  return page.locator('.panel').evaluateAll((panels) => panels.map((p) => p.id));
+}
 const traces = (panel) => panel.locator('.plot').evaluate((plot) => plot.data.map(({name, x, y, visible}) => ({name, x: [...x], y: [...y], visible})));
 const option = (where, label, value) => where.getByRole('combobox', {name: label, exact: true}).selectOption(value);
 
@@ -86,6 +91,8 @@ const tests = {
     const page = await open(browser, url);
     assert.equal(await page.locator('.chosen').textContent(), `${runs.length} of ${runs.length} runs`);
     const panel = await show(page, 'x-work');
+    const looks = await panel.locator('.plot').evaluate((plot) => plot.data.map(({line, marker}) => `${line.color} ${line.dash} ${marker.symbol}`));
+    assert.equal(new Set(looks).size, looks.length, 'curves are told apart');
     const rk4 = (await traces(panel)).find((t) => t.name === 'rk4 (quaternion)');
     const wanted = runs.filter((r) => r.problem === 'free_body' && r.integrator === 'rk4' && r.status === 'ok').sort((a, b) => b.h - a.h);
     assert.deepEqual(rk4.y, wanted.map((r) => r.attitude_error_max));
@@ -99,6 +106,15 @@ const tests = {
     await option(page.locator('.filters'), 'Units', 'customary');
     const arcseconds = (await traces(panel)).find((t) => t.name === 'rk4 (quaternion)').y[0];
     assert.ok(Math.abs(arcseconds / wanted[0].attitude_error_max / 206264.806 - 1) < 1e-6);
+    await close(page);
+  },
+
+  async 'the answer comes first, and opens'(browser) {
+    const page = await open(browser, url);
+    assert.equal(await page.locator('main table').first().locator('thead th').first().textContent(), 'need');
+    const [row] = await page.locator('#needs tbody tr', {hasText: 'long free motion'}).allTextContents();
+    assert.ok(row.includes('free_body, 50 s: '), row);
+    assert.equal(await page.locator('#needs tbody tr', {hasText: 'These records cannot say'}).count() > 0, true);
     await close(page);
   },
 
@@ -169,6 +185,13 @@ const tests = {
         const panel = await show(page, id);
         const fallen = (await panel.locator('.remark').textContent()).includes('no WebGL');
         if (flat) assert.ok(fallen);
+        if (flat && id === 'x-polhodes') {
+          const titles = () => panel.locator('.plot').evaluate((plot) => plot.layout.annotations.map(({text}) => text));
+          assert.deepEqual(await titles(), ['ωx [rad/s]', 'ωy [rad/s]', 'ωz [rad/s]']);
+          await option(panel, 'Body', {label: 'free_body, inertia = (100 120 110 7 -11 4), 50 s'});
+          assert.deepEqual(await titles(), ['ω1 [rad/s]', 'ω2 [rad/s]', 'ω3 [rad/s]']);
+          assert.match(await panel.locator('.readout').textContent(), /along the principal axes \(/);
+        }
         const kinds = await panel.locator('.plot').evaluate((plot) => plot.data.map(({type}) => type));
         assert.ok(kinds.includes(fallen ? 'scatter' : 'scatter3d') && kinds.length >= 2, `${id}: ${kinds}`);
         if (!flat) console.log(fallen ? '        (no WebGL here)' : '        (WebGL in software)');
@@ -186,9 +209,12 @@ const tests = {
   },
 
   async 'little to show is no error'(browser) {
-    for (const address of [single, refusals, blind]) {
+    for (const [name, address] of Object.entries({single, refusals, blind})) {
       const page = await open(browser, address);
-      for (const id of await page.locator('.panel').evaluateAll((panels) => panels.map((p) => p.id))) await show(page, id);
+      assert.ok((await showAll(page)).length > 8);
+      const said = await page.locator('.panel .remark').allTextContents();
+      assert.ok(said.some((text) => text.startsWith('Nothing of what is chosen')), `${name}: ${said}`);
+      assert.equal(await page.locator('#x-work .plot').isVisible(), name !== 'refusals', name);
       await close(page);
     }
   },
@@ -201,37 +227,46 @@ const tests = {
   },
 
   async 'fits phones and wide screens, in light and dark'(browser) {
+    const page = await open(browser, url, {viewport: {width: 1600, height: 900}, colorScheme: 'light'});
     for (const [colorScheme, width] of [['light', 1600], ['dark', 360]]) {
-      const page = await open(browser, url, {viewport: {width, height: 900}, colorScheme});
-      const ids = await page.locator('.panel').evaluateAll((panels) => panels.map((p) => p.id));
-      for (const id of ids) {
-        const panel = await show(page, id);
-        if (process.env.POLHODE_SCREENSHOTS) {
+      await page.setViewportSize({width, height: 900});
+      await page.emulateMedia({colorScheme});
+      const ids = await showAll(page);
+      if (process.env.POLHODE_SCREENSHOTS) {
+        for (const id of ids) {
+          const panel = await show(page, id);
           await page.waitForTimeout(500);
           await panel.screenshot({path: path.join(process.env.POLHODE_SCREENSHOTS, `${colorScheme}-${width}-${id}.png`)});
         }
       }
       const [content, seen] = await page.evaluate(() => [document.documentElement.scrollWidth, window.innerWidth]);
       assert.ok(content <= seen, `${content} px wide at ${seen}`);
-      const ink = await (await show(page, 'x-work')).locator('.plot').evaluate((plot) => plot._fullLayout.font.color);
-      assert.equal(ink, colorScheme === 'dark' ? '#e4e7ea' : '#1d2125');
-      await close(page);
+      const panel = await show(page, 'x-work');
+      const wanted = colorScheme === 'dark' ? '#e4e7ea' : '#1d2125';
+      await page.waitForFunction((ink) => document.querySelector('#x-work .plot')._fullLayout.font.color === ink, wanted);
+      const box = await panel.locator('.plot .main-svg').first().boundingBox();
+      assert.ok(box.width > 0.8 * Math.min(width, 1408) - 40 && box.width <= width, `a picture of ${box.width} px at ${width}`);
     }
+    await close(page);
   },
 };
 
 const browser = await launch('--disable-3d-apis');  // in software, space is slow
 let failed = 0;
-for (const [name, test] of Object.entries(tests)) {
-  const start = Date.now();
-  try {
-    await test(browser);
-    console.log(`ok      ${name} (${Date.now() - start} ms)`);
-  } catch (error) {
-    ++failed;
-    console.log(`FAILED  ${name}\n${error.stack}`);
-    await Promise.all(browser.contexts().map((context) => context.close()));
+const waiting = Object.entries(tests);
+/** Two at a time: most of a test is waiting. */
+async function work() {
+  for (let next = waiting.shift(); next; next = waiting.shift()) {
+    const [name, test] = next, start = Date.now();
+    try {
+      await test(browser);
+      console.log(`ok      ${name} (${Date.now() - start} ms)`);
+    } catch (error) {
+      ++failed;
+      console.log(`FAILED  ${name}\n${error.stack}`);
+    }
   }
 }
+await Promise.all([work(), work()]);
 await browser.close();
 process.exit(failed ? 1 : 0);
