@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -64,6 +65,7 @@ class Folder {
 struct Result {
   int code = -1;  ///< the exit code; 128 + n when a signal n ended it
   std::string out, err;
+  long memory = 0;  ///< the most that it had at once [kB]
 };
 
 /// `words` separated by spaces; '' is an empty one.
@@ -116,13 +118,14 @@ class Process {
   Result finish(std::chrono::seconds limit = std::chrono::seconds(60)) {
     auto const end = std::chrono::steady_clock::now() + limit;
     int status = 0;
-    while (::waitpid(pid_, &status, WNOHANG) == 0) {
+    rusage used{};
+    while (::wait4(pid_, &status, WNOHANG, &used) == 0) {
       if (std::chrono::steady_clock::now() > end) throw std::runtime_error("polhode takes longer than the time limit");
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
     pid_ = 0;
     return {WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status), text_of(caught_.path / "out"),
-            text_of(caught_.path / "err")};
+            text_of(caught_.path / "err"), used.ru_maxrss};
   }
 
  private:

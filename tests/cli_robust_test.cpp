@@ -254,6 +254,10 @@ TEST(CliRobust, AFolderThatCannotBeWritten) {
   Result const result = polhode(folder, "run s.toml --out /proc/polhode/r");
   EXPECT_EQ(result.code, 5);
   EXPECT_THAT(result.err, HasSubstr("/proc/polhode/r"));
+  // A folder that is there, and in which not even root can make files.
+  Result const sealed = polhode(folder, "run s.toml --out /proc/sys");
+  EXPECT_EQ(sealed.code, 5);
+  EXPECT_THAT(sealed.err, HasSubstr("/proc/sys/suite.toml: cannot be written"));
   if (::geteuid() == 0) GTEST_SKIP() << "root writes everywhere else";
   fs::create_directory(folder.path / "r");
   fs::permissions(folder.path / "r", fs::perms::owner_read | fs::perms::owner_exec);
