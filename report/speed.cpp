@@ -118,20 +118,20 @@ void add_races(Document& document, std::vector<Race> const& races, bool adaptive
   std::string const how =
       adaptive ? "Steps chosen by the method: the cheapest tolerance that reaches the error, of those that were tried."
                : "Equal steps: the cheapest step that reaches the error. It was chosen with the error known, which no "
-                 "user does: this is what a method can do, not what one gets. \"At the error\" is interpolated, in "
+                 "user does: this is what a method can do, not what one gets. \"At the target\" is interpolated, in "
                  "logarithms, between that run and the next coarser one.";
   Table table{.name = adaptive ? "speed-adaptive" : "speed-fixed",
               .caption = fmt::format("{} Ratio: time of the best rival over time of our best{}; below 1 the rival is "
                                      "faster. Its interval is that of the two times.",
-                                     how, adaptive ? "" : ", both at the error where they are interpolated"),
-              .columns = {{"problem"}, {"error [rad]", true}, {"first"}},
+                                     how, adaptive ? "" : ", both at the target where they are interpolated"),
+              .columns = {{"problem"}, {"target [rad]", true}, {"first"}},
               .rows = {}};
   for (char const* const side : {"ours", "best rival"}) {
     table.columns.push_back({side});
     table.columns.push_back({adaptive ? "tolerance" : "step"});
     table.columns.push_back({"its error", true});
     table.columns.push_back({"time", true});
-    if (!adaptive) table.columns.push_back({"at the error", true});
+    if (!adaptive) table.columns.push_back({"at the target", true});
   }
   table.columns.insert(table.columns.end(), {{"ratio", true}, {"95%"}});
   for (Race const& race : races) {
@@ -154,7 +154,7 @@ void add_libraries(Document& document, std::vector<Race> const& races) {
               .caption =
                   "The best of each library, and its time over that of our best (below 1: the library is "
                   "faster).",
-              .columns = {{"problem"}, {"control"}, {"error [rad]", true}, {"ours"}, {"time", true}},
+              .columns = {{"problem"}, {"control"}, {"target [rad]", true}, {"ours"}, {"time", true}},
               .rows = {}};
   for (std::string_view const library : libraries) {
     table.columns.push_back({std::string(library)});
