@@ -70,8 +70,9 @@ void add_report(CLI::App& app) {
   verb->callback([] {
     std::filesystem::path const target = out.empty() ? folder + "/report" : out;
     results::Contents const contents = results::read(folder);
-    if (contents.metas.empty())
-      throw results::StoreError(folder + ": holds no results; give a folder that `polhode run` wrote");
+    if (contents.metas.empty() && !contents.ensemble)
+      throw results::StoreError(folder +
+                                ": holds no results; give a folder that `polhode run` or `polhode ensemble` wrote");
     report::write_report(contents, target);
     if (::isatty(STDOUT_FILENO) != 0) fmt::print("{}", written_files(target));  // what scripts read is the line below
     fmt::print("{}\n", (target / "report.html").string());

@@ -35,6 +35,7 @@ Document document_of(Facts const& facts) {
   add_integrators(document, facts);
   add_orders(document, facts);
   add_speed(document, facts);
+  add_ensembles(document, facts);
   add_failures(document, facts);
   add_references(document, facts);
   add_provenance(document, facts);

@@ -30,6 +30,8 @@ void add_integrators(Document& document, Facts const& facts);
 void add_conservation(Document& document, Facts const& facts);
 void add_orders(Document& document, Facts const& facts);
 void add_speed(Document& document, Facts const& facts);
+/// Quantiles, histograms and worst samples of an ensemble; nothing if the folder has none.
+void add_ensembles(Document& document, Facts const& facts);
 void add_failures(Document& document, Facts const& facts);
 void add_references(Document& document, Facts const& facts);
 void add_provenance(Document& document, Facts const& facts);

@@ -214,12 +214,14 @@ Contents read(fs::path const& path) {
   Contents contents = collector.finish();
   contents.catalogue = read_catalogue(path);
   contents.benchmarks = read_benchmarks(path);
+  contents.ensemble = read_ensemble(path);
   return contents;
 }
 
 bool is_own_name(std::string_view name) {
   bool const hidden = name.starts_with('.');
-  bool const ours = name.starts_with(catalogue_file) || name.starts_with(benchmarks_file);  // and their drafts
+  bool const ours = name.starts_with(catalogue_file) || name.starts_with(benchmarks_file) ||
+                    name.starts_with(ensemble_file);  // and their drafts
   return hidden || ours || name == "suite.toml" || name.ends_with(".jsonl");
 }
 

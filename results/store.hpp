@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -16,6 +17,7 @@
 
 #include "results/benchmarks.hpp"
 #include "results/catalogue.hpp"
+#include "results/ensemble_file.hpp"
 #include "results/record.hpp"
 
 namespace polhode::results {
@@ -34,6 +36,7 @@ struct Contents {
   std::size_t repeated = 0;             ///< runs that a later run of the same cell and build replaced
   Catalogue catalogue;                  ///< of the integrators; empty if the folder has none, or for one file
   Benchmarks benchmarks;                ///< of polhode-bench; the same
+  std::optional<Ensemble> ensemble;     ///< of polhode ensemble, if the folder has one
 };
 
 /// Reads every *.jsonl in `path` (a folder), in the order of their names, and its catalogue; or `path` itself (a file).
