@@ -62,8 +62,12 @@ bool speaks_for_the_job() {
 Ranks::Ranks(std::unique_ptr<Channel> channel) : channel_(std::move(channel)), unwinding_(std::uncaught_exceptions()) {}
 
 Ranks::~Ranks() {
-  bool const known_to_all = std::uncaught_exceptions() == unwinding_ || ended_together_ || alone();
-  if (channel_ && known_to_all) channel_->leave();
+  if (!channel_) return;
+  bool const unwinding = std::uncaught_exceptions() > unwinding_;
+  if (unwinding && !ended_together_ && !alone()) return;  // the others do not know: the launcher ends them
+  // Who waits for the others here sleeps; in MPI_Finalize it would take a processor from who still works.
+  if (!ended_together_) together([] {});
+  channel_->leave();
 }
 
 void Ranks::together(std::function<void()> const& step) {

@@ -28,7 +28,7 @@ class Ranks {
   static Ranks of_this_job();
   /// Ranks that reach each other through `channel`; null: alone.
   explicit Ranks(std::unique_ptr<Channel> channel);
-  /// Takes leave of the others.
+  /// Takes leave of the others, once all are there.
   ~Ranks();
   Ranks(Ranks const&) = delete;
   Ranks& operator=(Ranks const&) = delete;
