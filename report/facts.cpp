@@ -204,6 +204,12 @@ std::vector<Cost> ranking(Instance const& instance, std::optional<double> target
   return sorted;
 }
 
+Entry at_target(Cost const& cost, Measure measure) {
+  if (!cost.interpolated) return absent;
+  if (measure == Measure::time) return cpu_time(results::CpuTime{cost.value, cost.low, cost.high});
+  return {significant(cost.value, 4), exact(cost.value)};
+}
+
 Measure measure_of(Instance const& instance) {
   bool const timed = std::ranges::any_of(
       instance.runs, [](Record const* run) { return is_ok(*run) && price_of(*run, Measure::time).has_value(); });

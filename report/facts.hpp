@@ -75,6 +75,8 @@ struct Cost {
 std::optional<Cost> cheapest(Sweep const& sweep, std::optional<double> target, Measure measure);
 /// Cheapest way of each integrator to an attitude error of `target` [rad], cheapest first; without one as `cheapest`.
 std::vector<Cost> ranking(Instance const& instance, std::optional<double> target, Measure measure);
+/// What the target itself costs, with its interval in the unit shown; `absent` unless it is interpolated.
+Entry at_target(Cost const& cost, Measure measure);
 /// Time if some run of the instance was timed, otherwise evaluations.
 Measure measure_of(Instance const& instance);
 

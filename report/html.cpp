@@ -13,7 +13,7 @@ constexpr char const* style = R"(
 @media (prefers-color-scheme: dark) {
   :root { --page: #16191c; --ink: #e4e7ea; --quiet: #a2a9b0; --rule: #3a4046; --row: #1f2327; }
 }
-body { margin: 0 auto; padding: 1rem; max-width: 76rem; background: var(--page); color: var(--ink);
+body { margin: 0 auto; padding: 1rem; max-width: 88rem; background: var(--page); color: var(--ink);
   font: 1rem/1.5 system-ui, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif; overflow-wrap: break-word; }
 h1, h2, h3 { line-height: 1.25; }
 p, figcaption { max-width: 50rem; }
@@ -31,7 +31,7 @@ th { vertical-align: bottom; }
 tr { background: var(--page); }
 tbody tr:nth-child(even) { background: var(--row); }
 :is(td, th):first-child { position: sticky; left: 0; background: inherit; }
-.long { min-width: 14rem; }
+.long { min-width: 11rem; }
 .figure { white-space: nowrap; }
 .number { text-align: right; }
 .number, .short { white-space: nowrap; }
@@ -102,7 +102,7 @@ std::string render(Table const& table) {
       if (is_hidden(table, i)) continue;
       bool const is_number = i < table.columns.size() && table.columns[i].number;
       char const* kind = is_number ? "number" : row[i].text.size() <= short_text ? "short" : "long";
-      out += fmt::format("<td class=\"{}\">{}</td>", kind, escape_html(row[i].text));
+      out += fmt::format("<td class=\"{}\">{}</td>", kind, unbroken(escape_html(row[i].text)));
     }
     out += "</tr>\n";
   }

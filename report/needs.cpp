@@ -60,8 +60,7 @@ constexpr Need needs[] = {
      [](Cell const& c) { return is_headline(c, headlines[2]); }, [](Record const&) { return true; }, no_extent},
     {"sliding mode",
      "dead_zone printed",
-     "the end reached, every claim of the paper that applies borne out, at the least cost; no error, for a motion that "
-     "slides has no digits to compare",
+     "the end reached and no claim of the paper missed, at the least cost; what slides has no digits to compare",
      {},
      [](Cell const& c) { return c.problem == "dead_zone" && has_word(c.variant, "printed"); },
      [](Record const& r) {
@@ -73,7 +72,7 @@ constexpr Need needs[] = {
      [](Cell const& c) { return is_network(c) && !is_sized(c); }, [](Record const&) { return true; }, no_extent},
     {"large fleets",
      "quaternion_sync, n",
-     "the norm of every craft kept within 1e-13, at the least cost; no error, for there is no reference",
+     "the norm of every craft kept within 1e-13, at the least cost; nothing that large has a reference",
      {},
      is_sized,
      [](Record const& r) { return is_kept(r.norm_drift_max); },
@@ -155,7 +154,8 @@ std::string silence(std::optional<Contest> const& contest) {
 }
 
 std::vector<Entry> row_of(Need const& need, std::optional<Contest> const& contest) {
-  std::vector<Entry> row{std::string(need.name), fmt::format("{}{}", contest ? contest->label + ": " : "", need.rule)};
+  std::vector<Entry> row{std::string(need.name),
+                         fmt::format("{}: {}", contest ? contest->label : std::string(need.problem), need.rule)};
   if (!contest || contest->ran.size() < 2 || contest->ranked.empty()) {
     row.emplace_back(silence(contest));
     while (row.size() < 9) row.emplace_back(absent);
@@ -163,14 +163,11 @@ std::vector<Entry> row_of(Need const& need, std::optional<Contest> const& contes
   }
   auto const& ranked = contest->ranked;
   Cost const& best = ranked.front();
-  bool const timed = contest->measure == Measure::time;
   row.emplace_back(with_control(best));
   row.push_back(number(finite(best.run->attitude_error_max)));
   row.push_back(number(finite(best.run->norm_drift_max), 2));
   row.push_back(cost_of(*best.run, contest->measure));
-  row.push_back(!best.interpolated ? Entry(absent)
-                : timed            ? Entry(duration(best.value), exact(best.value))
-                                   : Entry(significant(best.value), exact(best.value)));
+  row.push_back(at_target(best, contest->measure));
   row.emplace_back(ranked.size() > 1 ? other_words(ranked[1], best) : "nobody else serves");
   row.emplace_back(rival_words(ranked));
   return row;
@@ -181,27 +178,28 @@ std::vector<Entry> row_of(Need const& need, std::optional<Contest> const& contes
 void add_needs(Document& document, Facts const& facts) {
   if (facts.runs.empty()) return;
   document.say("Which method for which need?");
-  Table table{
-      .name = "needs",
-      .caption = Text("Which method for which need, by these records alone: of the runs that serve, the "
-                      "cheapest. Costs are compared at 1e-9 rad where the last run and the next coarser one of "
-                      "its sweep lie on either side of it, else as measured; × is the cost over that of the method "
-                      "to take, a tie where the intervals of the two overlap; the error is the largest over the "
-                      "run, the norm drift the delivered one. Deliberately careless methods are not chosen. "
-                      "Independent bodies in lanes are no runs: polhode-bench times them. " +
-                      timing_note(facts)),
-      .columns = {{"need"},
-                  {"problem and rule"},
-                  {"take"},
-                  {"attitude error [rad]", true},
-                  {"norm drift", true},
-                  {"cost", true},
-                  {"cost at 1e-9 rad", true},
-                  {"runner-up: cost"},
-                  {"best rival: cost"}},
-      .rows = {}};
+  Table table{.name = "needs",
+              .caption =
+                  "Of the runs that serve, the cheapest. × is the cost over that of the method to take, a tie "
+                  "where the intervals of the two overlap.",
+              .columns = {{"need"},
+                          {"problem and rule"},
+                          {"take"},
+                          {"error [rad]", true},
+                          {"norm drift", true},
+                          {"cost", true},
+                          {"at 1e-9 rad", true},
+                          {"runner-up"},
+                          {"best rival"}},
+              .rows = {}};
   for (Need const& need : needs) table.rows.push_back(row_of(need, asked(facts, need)));
   document.add(std::move(table));
+  document.say(
+      "The rows know these records alone. Costs are compared at 1e-9 rad where the run and the next coarser one of its "
+      "sweep lie on either side of it, else as measured; the error is the largest over the run, the norm drift the "
+      "delivered one. Deliberately careless methods are not chosen. Independent bodies in lanes are no runs: "
+      "polhode-bench times them. " +
+      timing_note(facts));
 }
 
 }  // namespace polhode::report

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "report/sections.hpp"
+#include "report/speed.hpp"
 #include "report/text.hpp"
 
 namespace polhode::report {
@@ -103,15 +104,29 @@ std::size_t add_figures(Document& document, Facts const& facts, Instance const& 
   return n;
 }
 
+/// With where it lies, if either cost varies.
+Entry times_the_best(Cost const& cost, Cost const& best) {
+  Ratio const ratio = ratio_of(cost, best);
+  Entry entry = number(ratio.value);
+  if (cost.run != best.run && ratio.low < ratio.high) {
+    entry.interval = fmt::format("{}, {}", significant(ratio.low), significant(ratio.high));
+  }
+  return entry;
+}
+
 Table cheapest_table(Instance const& instance, Measure measure, std::size_t n) {
   bool const timed = measure == Measure::time;
+  double bar = 0;
+  for (Record const* run : instance.runs) bar = std::max(bar, finite(run->reference_bar).value_or(0));
+  std::string const sure =
+      bar > 0 ? fmt::format(" Errors are certain to within {} rad, the bar of the reference.", significant(bar)) : "";
   Table table{.name = fmt::format("cheapest-{}", n),
               .caption = fmt::format(
                   "{}: the cheapest run of each integrator whose attitude error stays within the target, by "
                   "{}. \"At the target\" is interpolated in logarithms between that run and the next coarser "
                   "one of its sweep, and ranks; {} means that nothing brackets the target, and the run "
-                  "itself ranks.",
-                  instance.label, timed ? "CPU time" : "evaluations, since nothing was timed", absent),
+                  "itself ranks.{}",
+                  instance.label, timed ? "CPU time" : "evaluations, since nothing was timed", absent, sure),
               .columns = {{"target [rad]", true},
                           {"rank", true},
                           {"integrator"},
@@ -132,7 +147,6 @@ Table cheapest_table(Instance const& instance, Measure measure, std::size_t n) {
     for (std::size_t i = 0; i < costs.size(); ++i) {
       Cost const& cost = costs[i];
       Record const& run = *cost.run;
-      auto const shown = [&](double value) { return timed ? duration(value) : significant(value, 4); };
       std::optional<double> evaluations;
       if (run.evaluations) evaluations = static_cast<double>(*run.evaluations);
       table.rows.push_back({number(target), std::to_string(i + 1), run.of.integrator, run.of.formulation, run.of.policy,
@@ -140,9 +154,8 @@ Table cheapest_table(Instance const& instance, Measure measure, std::size_t n) {
                             number(arcseconds(*run.attitude_error_max)),
                             evaluations ? Entry(std::to_string(*run.evaluations)) : Entry(absent),
                             cpu_time(run.cpu_time_s), run.cpu_time_s ? number(run.cpu_time_s->low) : Entry(absent),
-                            run.cpu_time_s ? number(run.cpu_time_s->high) : Entry(absent),
-                            cost.interpolated ? Entry(shown(cost.value), exact(cost.value)) : Entry(absent),
-                            number(cost.value / costs.front().value)});
+                            run.cpu_time_s ? number(run.cpu_time_s->high) : Entry(absent), at_target(cost, measure),
+                            times_the_best(cost, costs.front())});
     }
   }
   return table;
