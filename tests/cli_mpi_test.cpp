@@ -92,6 +92,26 @@ TEST_F(CliMpi, ResultsAreThoseOfOneProcessBitForBit) {
   EXPECT_EQ(idle.out, "r2: 36 cells: 0 ok, 0 refused, 0 failed, 36 already done\n") << idle.err;
 }
 
+TEST_F(CliMpi, StatisticsOfAnEnsembleAreThoseOfOneProcessBitForBit) {
+  // 3 items of 8192 samples, the last one short.
+  std::string const command =
+      "ensemble pd_slew --integrator rk4 --h 0.05 --t-end 10 --samples 20000 --seed 5 --disperse omega0=normal(0,0.05)";
+  auto const in = [&](std::string const& out) { return " --out " + out + " --raw " + out + ".csv"; };
+  auto const told = [&](std::string const& out) {
+    Json all = Json::parse(text_of(folder.path / out / "ensemble.json"));
+    for (std::string const key : {"timing", "provenance"}) EXPECT_EQ(all.erase(key), 1U);
+    return all;
+  };
+  ASSERT_EQ(polhode(folder, command + in("alone") + " --threads 2").code, 0);
+  for (int const ranks : {1, 2, 4}) {
+    std::string const out = "r" + std::to_string(ranks);
+    Result const result = mpirun(folder, ranks, command + in(out) + " --threads 1");
+    ASSERT_EQ(result.code, 0) << result.err;
+    EXPECT_EQ(told(out), told("alone")) << ranks << " ranks";
+    EXPECT_EQ(text_of(folder.path / (out + ".csv")), text_of(folder.path / "alone.csv")) << ranks << " ranks";
+  }
+}
+
 TEST_F(CliMpi, MistakesAreToldOnceWithTheirExitCode) {
   folder.write("bad.toml", "name = 'bad'\n[[sweep]]\nproblem = 'free_body'\nintegrator = 'rk5'\nh = 0.1\n");
   struct Mistake {
