@@ -106,6 +106,20 @@ void prepare_folder(fs::path const& out, std::optional<std::string> const& suite
   }
 }
 
+/// The graph files that the suite names stand beside it, and it cannot be read without them.
+void copy_graphs(fs::path const& out, std::vector<fs::path> const& folders, std::string const& suite) {
+  try {
+    for (fs::path const& folder : folders)
+      for (fs::directory_entry const& entry : fs::directory_iterator(folder)) {
+        std::string const name = entry.path().filename().string();
+        bool const named = entry.is_regular_file() && !is_own_name(name) && suite.find(name) != std::string::npos;
+        if (named) fs::copy_file(entry.path(), out / name, fs::copy_options::skip_existing);
+      }
+  } catch (fs::filesystem_error const& error) {
+    throw StoreError(fmt::format("{}: cannot be copied: {}", error.path1().string(), error.code().message()));
+  }
+}
+
 }  // namespace
 
 MergeSummary merge(fs::path const& out, std::vector<fs::path> const& folders) {
@@ -128,6 +142,7 @@ MergeSummary merge(fs::path const& out, std::vector<fs::path> const& folders) {
   auto const last = last_runs(parts);
 
   prepare_folder(out, suite);
+  if (suite) copy_graphs(out, folders, *suite);
   if (catalogue) write_catalogue(out, *catalogue);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     Contents const& contents = parts[i].contents;

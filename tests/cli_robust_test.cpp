@@ -301,6 +301,10 @@ TEST(CliRobust, AGraphFromElsewhereIsCopiedByItsName) {
   Result const result = Process(folder.path / "inner", split("run given.toml --out r")).finish();
   EXPECT_EQ(result.code, 0) << result.err;
   EXPECT_EQ(text_of(folder.path / "inner/r/graph.txt"), text_of(folder.path / "graph.txt"));
+  // ... and goes along when folders are merged: without it the suite there could not be read.
+  EXPECT_EQ(Process(folder.path / "inner", split("merge m r")).finish().code, 0);
+  EXPECT_EQ(text_of(folder.path / "inner/m/graph.txt"), text_of(folder.path / "graph.txt"));
+  EXPECT_EQ(Process(folder.path / "inner", split("check m")).finish().code, 3) << "no [[expect]] is all that is wrong";
 }
 
 TEST(CliRobust, AGraphDoesNotReplaceWhatARunWrites) {
