@@ -146,12 +146,13 @@ void add_networks(Document& document, Benchmarks const& all) {
     sizes[n] = true;
   }
   if (rows.empty()) return;
-  Table table{.name = "speed-networks",
-              .caption =
-                  "Networks of quaternion_sync over the same second: a step of one craft. The last column is the "
-                  "largest network over that of 100.",
-              .columns = {{"method"}},
-              .rows = {}};
+  Table table{
+      .name = "speed-networks",
+      .caption =
+          "Networks of quaternion_sync over the same second: a step of one craft. Each hears its neighbour and one at "
+          "random, wherever in memory that is. The last column is the largest network over that of 100.",
+      .columns = {{"method"}},
+      .rows = {}};
   for (auto const& [n, there] : sizes) table.columns.push_back({fmt::format("n = {}", n), true});
   table.columns.insert(table.columns.end(), {{"largest / 100", true}, {"95%"}});
   for (auto const& [method, prices] : rows) {
