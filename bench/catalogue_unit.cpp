@@ -17,6 +17,12 @@ namespace polhode::bench {
 namespace {
 
 template <class... D>
+constexpr bool have_races(Types<D...>) {
+  return (is_one_of<D>(RacedProblems{}) && ...);
+}
+static_assert(have_races(AddedRaces{}), "RACES: methods are raced on RacedProblems of problems/catalog.hpp alone");
+
+template <class... D>
 std::vector<ProblemEntry const*> entries(Types<D...>) {
   return {&problem_entry<D>()...};
 }
