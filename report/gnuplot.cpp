@@ -5,12 +5,15 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <future>
 #include <span>
 #include <sstream>
+#include <thread>
 
 #include "report/render.hpp"
 #include "report/report.hpp"
@@ -266,10 +269,14 @@ std::string joined(std::vector<std::string> const& clauses) {
   return out;
 }
 
-/// Runs gnuplot on NAME.gp inside `folder`, after the command `before`; returns what went wrong, or nothing.
-std::string run_gnuplot(std::string const& name, std::filesystem::path const& folder, std::string before) {
+/// Runs gnuplot on NAME.gp inside `folder`, once after each command of `before`; returns what went wrong, or nothing.
+std::string run_gnuplot(std::string const& name, std::filesystem::path const& folder, std::vector<std::string> before) {
   std::string script = name + ".gp", program = "gnuplot", plain = "--default-settings", first = "-e";
-  std::array<char*, 6> arguments{program.data(), plain.data(), first.data(), before.data(), script.data(), nullptr};
+  std::vector<char*> arguments{program.data(), plain.data()};
+  for (std::string& command : before) {
+    for (std::string* word : {&first, &command, &script}) arguments.push_back(word->data());
+  }
+  arguments.push_back(nullptr);
   std::string const log = name + ".log";
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
@@ -359,11 +366,12 @@ void draw(Figure& figure, std::filesystem::path const& folder) {
   out << gnuplot_script(figure);
   out.close();
   if (!out) throw ReportError(fmt::format("{}: cannot be written", script.string()));
-  figure.why_not = run_gnuplot(figure.name, folder, "pdf = 0");
-  if (!figure.why_not.empty()) return;
-  // A gnuplot without Cairo draws no PDF: the report is complete all the same.
-  bool const printed = run_gnuplot(figure.name, folder, "pdf = 1").empty();
-  if (!printed) std::filesystem::remove(print, ignored);
+  if (!run_gnuplot(figure.name, folder, {"pdf = 0", "pdf = 1"}).empty()) {
+    // A gnuplot without Cairo draws no PDF: the report is complete all the same.
+    figure.why_not = run_gnuplot(figure.name, folder, {"pdf = 0"});
+    if (!figure.why_not.empty()) return;
+    std::filesystem::remove(print, ignored);
+  }
   std::filesystem::remove(folder / (figure.name + ".log"), ignored);
   std::ifstream in(picture);
   std::ostringstream svg;
@@ -373,6 +381,17 @@ void draw(Figure& figure, std::filesystem::path const& folder) {
     return;
   }
   figure.svg = svg.str();
+}
+
+void draw_all(std::vector<Figure*> const& figures, std::filesystem::path const& folder) {
+  std::size_t const workers = std::min<std::size_t>(figures.size(), std::max(1U, std::thread::hardware_concurrency()));
+  std::atomic<std::size_t> next = 0;
+  auto const work = [&] {
+    for (std::size_t i = next++; i < figures.size(); i = next++) draw(*figures[i], folder);
+  };
+  std::vector<std::future<void>> running;
+  for (std::size_t i = 0; i < workers; ++i) running.push_back(std::async(std::launch::async, work));
+  for (auto& one : running) one.get();
 }
 
 }  // namespace polhode::report

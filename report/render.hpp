@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "report/document.hpp"
 #include "report/page.hpp"
@@ -24,5 +25,7 @@ std::string escape_html(std::string_view text);
 std::string gnuplot_script(Figure const& figure);
 /// Writes NAME.gp into `folder` and lets gnuplot draw it; fills `svg` or `why_not`. No shell takes part.
 void draw(Figure& figure, std::filesystem::path const& folder);
+/// The same for figures of different names, as many at a time as there are processors.
+void draw_all(std::vector<Figure*> const& figures, std::filesystem::path const& folder);
 
 }  // namespace polhode::report

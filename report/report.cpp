@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <fstream>
+#include <vector>
 
 #include "report/latex.hpp"
 #include "report/render.hpp"
@@ -62,6 +63,7 @@ void write_report(results::Contents const& contents, std::filesystem::path const
   Document document = document_of(facts);
   make_folder(out / "tables");
   make_folder(out / "figures");
+  std::vector<Figure*> figures;
   for (Block& block : document.blocks) {
     if (auto const* table = std::get_if<Table>(&block)) {
       write(out / "tables" / (table->name + ".csv"), to_csv(*table));
@@ -69,9 +71,10 @@ void write_report(results::Contents const& contents, std::filesystem::path const
     }
     if (auto* figure = std::get_if<Figure>(&block)) {
       write(out / "figures" / (figure->name + ".csv"), to_csv(*figure));
-      draw(*figure, out / "figures");
+      figures.push_back(figure);
     }
   }
+  draw_all(figures, out / "figures");
   write(out / "report.md", to_markdown(document));
   write(out / "report.html", to_html(document, interactive_part(facts, page_assets())));
 }
