@@ -83,7 +83,8 @@ std::int64_t peak_memory() {
 }
 
 /// Deals the items out and joins what comes back, in order.
-results::EnsembleStatistics gather(EnsembleJob const& job, int threads, std::string const& raw, Ranks& ranks) {
+results::EnsembleStatistics gather(EnsembleJob const& job, EnsembleTiming& timing, std::string const& raw,
+                                   Ranks& ranks) {
   EnsemblePart all = job.nothing();
   std::ofstream rows;
   if (job.request().raw && ranks.manager()) {
@@ -93,7 +94,14 @@ results::EnsembleStatistics gather(EnsembleJob const& job, int threads, std::str
   Progress progress(ranks.manager() ? std::size_t(job.items()) : 0);
   progress.say(fmt::format("{} samples of {}", job.request().samples, job.prepared().cell.problem));
   ranks.distribute(
-      job.items(), [&](std::int64_t item) { return job.work(item, threads, stopped); },
+      job.items(),
+      [&](std::int64_t item) {  // one at a time
+        double const begin = cpu_seconds();
+        std::string bytes = job.work(item, timing.threads, stopped);
+        timing.cpu_seconds += cpu_seconds() - begin;
+        timing.samples_here += job.samples_in(item);
+        return bytes;
+      },
       [&](std::int64_t, std::string const& bytes) {
         EnsemblePart const part = job.part(bytes);
         all.statistics += part.statistics;
@@ -120,7 +128,7 @@ int run_ensemble_verb(EnsembleFlags const& flags) {
   if (ranks.manager()) warn(job->prepared().problem->warning());
 
   auto const begin = std::chrono::steady_clock::now();
-  results::EnsembleStatistics const statistics = gather(*job, timing.threads, flags.raw, ranks);
+  results::EnsembleStatistics const statistics = gather(*job, timing, flags.raw, ranks);
   if (!ranks.manager()) return 0;
   if (stopped) {
     std::fputs("polhode: interrupted; nothing was written but rows of --raw\n", stderr);

@@ -152,8 +152,12 @@ std::int64_t EnsembleJob::items() const {
   return parts_of(request_.samples, samples_in_item);
 }
 
+std::int64_t EnsembleJob::samples_in(std::int64_t item) const {
+  return std::min(samples_in_item, request_.samples - item * samples_in_item);
+}
+
 std::string EnsembleJob::work(std::int64_t item, int threads, std::atomic<bool> const& stop) const {
-  std::int64_t const first = item * samples_in_item, last = std::min(first + samples_in_item, request_.samples);
+  std::int64_t const first = item * samples_in_item, last = first + samples_in(item);
   std::int64_t const chunks = parts_of(last - first, samples_in_chunk);
   std::vector<EnsemblePart> parts(std::size_t(chunks), nothing());
   on_threads(threads, chunks, [&](std::int64_t k) {

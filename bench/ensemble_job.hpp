@@ -48,6 +48,7 @@ class EnsembleJob {
 
   /// Work is dealt out in items; each is independent of all others.
   std::int64_t items() const;
+  std::int64_t samples_in(std::int64_t item) const;
   /// Runs an item on so many threads. Ends early, with whatever it has, once `stop` is set.
   std::string work(std::int64_t item, int threads, std::atomic<bool> const& stop) const;
   EnsemblePart nothing() const;

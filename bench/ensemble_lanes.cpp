@@ -1,7 +1,8 @@
 #include "bench/ensemble_lanes.hpp"
 
+#include <time.h>
+
 #include <array>
-#include <chrono>
 
 #include "bench/ensemble.hpp"
 #include "integrators/runge_kutta.hpp"
@@ -21,6 +22,12 @@ std::unique_ptr<LaneFleet> lane_fleet(std::string const& problem, FleetPlan cons
   return nullptr;
 }
 
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
+}
+
 double plain_kernel_rate(int threads) {
   constexpr std::int64_t bodies = 4096, steps = 1000;
   constexpr double h = 0.05, least_seconds = 0.2;
@@ -30,17 +37,15 @@ double plain_kernel_rate(int threads) {
     p.start.second.x = gather<S>(block, [](std::int64_t k) { return 0.1 + 1e-5 * double(k); });
     return p;
   };
-  using Clock = std::chrono::steady_clock;
-  double seconds = 0, body_steps = 0;
-  while (seconds < least_seconds) {
-    auto const begin = Clock::now();
+  double const begin = cpu_seconds();
+  double body_steps = 0;
+  while (cpu_seconds() - begin < least_seconds * threads) {
     std::vector<double> ends(std::size_t(bodies * threads));
     run_ensemble_on_threads(threads, Rk4{}, EnsembleRun{h, steps, 0}, bodies * threads, make,
                             [&](std::int64_t k, auto const& x, Status) { ends[std::size_t(k)] = x.first.w; });
-    seconds += std::chrono::duration<double>(Clock::now() - begin).count();
     body_steps += double(steps) * double(bodies) * double(threads);
   }
-  return body_steps / seconds;
+  return body_steps / (cpu_seconds() - begin);
 }
 
 }  // namespace polhode::bench

@@ -78,8 +78,14 @@ std::optional<std::int64_t> first_to_look_at(results::EnsembleStatistics const& 
 double EnsembleTiming::rate(EnsembleJob const& job) const {
   return double(job.request().samples) * double(job.steps()) / seconds;
 }
-double EnsembleTiming::share_of_kernel(EnsembleJob const& job) const {
-  return rate(job) / (kernel_rate * ranks);
+std::optional<double> EnsembleTiming::cpu_rate(EnsembleJob const& job) const {
+  if (samples_here == 0 || !(cpu_seconds > 0)) return {};
+  return double(samples_here) * double(job.steps()) / cpu_seconds;
+}
+std::optional<double> EnsembleTiming::share_of_kernel(EnsembleJob const& job) const {
+  std::optional<double> const rate = cpu_rate(job);
+  if (!rate) return {};
+  return *rate / kernel_rate;
 }
 
 std::string ensemble_command(EnsembleJob const& job) {
@@ -98,6 +104,7 @@ Json ensemble_json(EnsembleJob const& job, results::EnsembleStatistics const& st
   results::Cell const& cell = job.prepared().cell;
   Json disperse = Json::array();
   for (Dispersion const& each : job.dispersions().list()) disperse.push_back(each.text);
+  auto const optional = [](std::optional<double> const& value) { return value ? Json(*value) : Json(nullptr); };
   std::string replay = replay_command(job, 0);
   replay.back() = 'K';
   return {{"schema", results::schema},
@@ -126,8 +133,9 @@ Json ensemble_json(EnsembleJob const& job, results::EnsembleStatistics const& st
             {"threads", timing.threads},
             {"ranks", timing.ranks},
             {"body_steps_per_second", timing.rate(job)},
-            {"plain_rk4_body_steps_per_second", timing.kernel_rate * timing.ranks},
-            {"share_of_plain_rk4", timing.share_of_kernel(job)},
+            {"body_steps_per_cpu_second", optional(timing.cpu_rate(job))},
+            {"plain_rk4_body_steps_per_cpu_second", timing.kernel_rate},
+            {"share_of_plain_rk4", optional(timing.share_of_kernel(job))},
             {"peak_memory_bytes", timing.peak_memory}}},
           {"provenance", results::to_json(provenance())}};
 }
@@ -142,11 +150,13 @@ std::string ensemble_text(EnsembleJob const& job, results::EnsembleStatistics co
   text += metric_table(statistics, outlet);
   text += "quantiles with their 95% intervals; samples without a value lie above all others\n";
   text += endings_text(statistics);
-  text += fmt::format(
-      "{:.2f} s on {} thread{}{}: {:.3g} body-steps/s, {:.0f}% of the plain RK4 kernel's {:.3g}; {:.0f} MiB\n",
-      timing.seconds, timing.threads, timing.threads == 1 ? "" : "s",
-      timing.ranks == 1 ? "" : fmt::format(" of each of {} ranks", timing.ranks), timing.rate(job),
-      100 * timing.share_of_kernel(job), timing.kernel_rate * timing.ranks, double(timing.peak_memory) / (1 << 20));
+  text += fmt::format("{:.2f} s on {} thread{}{}: {:.3g} body-steps/s", timing.seconds, timing.threads,
+                      timing.threads == 1 ? "" : "s",
+                      timing.ranks == 1 ? "" : fmt::format(" of each of {} ranks", timing.ranks), timing.rate(job));
+  if (auto const share = timing.share_of_kernel(job))
+    text += fmt::format("; {:.3g} per second of processor time, {:.0f}% of the plain RK4 kernel's {:.3g}",
+                        *timing.cpu_rate(job), 100 * *share, timing.kernel_rate);
+  text += fmt::format("; {:.0f} MiB\n", double(timing.peak_memory) / (1 << 20));
   if (auto const sample = first_to_look_at(statistics)) text += "replay: " + replay_command(job, *sample) + "\n";
   return text;
 }

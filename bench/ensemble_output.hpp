@@ -1,6 +1,7 @@
 #pragma once
 /// What an ensemble tells: ensemble.json for programs and the report, a table for people.
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 
 #include "bench/ensemble_job.hpp"
@@ -13,11 +14,15 @@ struct EnsembleTiming {
   double seconds = 0;  ///< wall time of all samples
   int threads = 1;     ///< of each rank
   int ranks = 1;
-  double kernel_rate = 0;        ///< body-steps per second of the plain RK4 kernel, on the threads of one rank
-  std::int64_t peak_memory = 0;  ///< greatest resident size of this process [B]
+  double cpu_seconds = 0;         ///< processor time that this process spent on its samples
+  std::int64_t samples_here = 0;  ///< how many these were
+  double kernel_rate = 0;         ///< body-steps per second of processor time of the plain RK4 kernel
+  std::int64_t peak_memory = 0;   ///< greatest resident size of this process [B]
 
-  double rate(EnsembleJob const& job) const;  ///< body-steps per second, all ranks together
-  double share_of_kernel(EnsembleJob const& job) const;
+  double rate(EnsembleJob const& job) const;  ///< body-steps per second of wall time, all ranks together
+  /// Body-steps per second of processor time; nothing if this process had no samples.
+  std::optional<double> cpu_rate(EnsembleJob const& job) const;
+  std::optional<double> share_of_kernel(EnsembleJob const& job) const;
 };
 
 /// The flags of the same ensemble, and of one of its samples.

@@ -129,12 +129,17 @@ void add_ensembles(Document& document, Facts const& facts) {
   std::vector<std::string> endings;
   for (auto const& [name, ending] : ensemble.endings)
     endings.push_back(fmt::format("{} {}", ending.count, one_line(name)));
+  std::string const share = ensemble.share_of_plain_rk4
+                                ? fmt::format(
+                                      ", by processor time {:.0f}% of what the plain RK4 step does there without "
+                                      "control and without looking",
+                                      100 * *ensemble.share_of_plain_rk4)
+                                : "";
   document.say(fmt::format(
-      "They ended: {}. It took {} s on {} of {}: {} body-steps per second, {:.0f}% of what the plain "
-      "RK4 step does there without control and without looking, in {:.0f} MiB at most.",
-      listed(endings), significant(ensemble.seconds), counted(std::size_t(ensemble.threads), "thread", "threads"),
-      counted(std::size_t(ensemble.ranks), "process", "processes"), significant(ensemble.rate),
-      100 * ensemble.share_of_plain_rk4, double(ensemble.peak_memory) / (1 << 20)));
+      "They ended: {}. It took {} s on {} of {}: {} body-steps per second{}, in {:.0f} MiB at most.", listed(endings),
+      significant(ensemble.seconds), counted(std::size_t(ensemble.threads), "thread", "threads"),
+      counted(std::size_t(ensemble.ranks), "process", "processes"), significant(ensemble.rate), share,
+      double(ensemble.peak_memory) / (1 << 20)));
   document.add(quantile_table(ensemble));
   add_histograms(document, ensemble);
   document.add(worst_table(ensemble));

@@ -66,7 +66,7 @@ Ensemble decoded(Json const& json) {
                 .metrics = {},
                 .seconds = timing.at("seconds"),
                 .rate = timing.at("body_steps_per_second"),
-                .share_of_plain_rk4 = timing.at("share_of_plain_rk4"),
+                .share_of_plain_rk4 = number_or_null(timing.at("share_of_plain_rk4")),
                 .threads = timing.at("threads"),
                 .ranks = timing.at("ranks"),
                 .peak_memory = timing.at("peak_memory_bytes"),

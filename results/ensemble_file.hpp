@@ -38,7 +38,8 @@ struct Ensemble {
   double settle_angle = 0;  ///< [rad]
   std::vector<std::pair<std::string, EndingStatistics>> endings;
   std::vector<EnsembleMetric> metrics;
-  double seconds = 0, rate = 0, share_of_plain_rk4 = 0;  ///< body-steps per second
+  double seconds = 0, rate = 0;              ///< body-steps per second
+  std::optional<double> share_of_plain_rk4;  ///< by processor time
   int threads = 1, ranks = 1;
   std::int64_t peak_memory = 0;  ///< [B]
   Meta meta;
