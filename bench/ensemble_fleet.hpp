@@ -59,6 +59,7 @@ struct WatchedBody {
   }
 };
 
+/// The fleet of definition D on attitude space A by one method.
 template <class D, template <class> class A, class Method>
 class FleetInLanes final : public LaneFleet {
   using Field = decltype(std::declval<D const&>().template field<double, A, true>());

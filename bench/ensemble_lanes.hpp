@@ -33,6 +33,7 @@ struct FleetPlan {
   double threshold = 0;  ///< settled below [rad]
 };
 
+/// Samples of one problem by one method, run in lanes over bodies; the types are forgotten.
 class LaneFleet {
  public:
   virtual ~LaneFleet() = default;

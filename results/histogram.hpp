@@ -8,7 +8,7 @@
 
 namespace polhode::results {
 
-/// A function of bytes that writes and reads plain numbers: what ranks send each other. Same machine, same build.
+/// Plain numbers and texts as bytes, written and read in the same order: what ranks of one build send each other.
 class Bytes {
  public:
   Bytes() = default;
