@@ -70,7 +70,8 @@ void each_with_size(F const& f, Chart<M> const& e, Point<M> const& a, Point<M> c
 ///
 /// Steps change as in DOPRI5: step_size.hpp.
 ///
-/// fails  Status::step_underflow if the step falls below 10 ulp of t, Status::max_steps after `most` trial steps in one
+/// fails  Status::step_underflow if the step falls below 10 ulp of t, Status::max_steps after `most_trials` trial steps
+/// in one
 ///        advance, Status::diverged if the state or its slope is not finite
 template <class Pair, Problem P>
 class ControlledInCharts {
@@ -93,18 +94,15 @@ class ControlledInCharts {
   }
 
   Status advance(Point<M>& x, R t, R t_end) {
-    for (std::int64_t trials = work_.steps + work_.rejected; t < t_end;) {
-      if (Status const status = step(x, t, t_end); status != Status::ok) return status;
-      if (work_.steps + work_.rejected - trials > most) return Status::max_steps;
-    }
-    return Status::ok;
+    return in_own_steps(
+        t, t_end, [&](R& now) { return step(x, now, t_end); }, [&] { return work_.steps + work_.rejected; });
   }
   /// One accepted step, not beyond t_end; t moves.
   Status step(Point<M>& x, R& t, R t_end) {
     slope_at(t, x, slope_);
     if (!all_finite(slope_)) return Status::diverged;
     if (!size_.known()) start(x, t, t_end - t);
-    for (std::int64_t trials = 0; trials < most; ++trials) {
+    for (std::int64_t trials = 0; trials < most_trials; ++trials) {
       auto const trial = size_.trial(t, t_end);
       if (size_.underflows(trial, t)) return Status::step_underflow;
       auto&& frame = frame_.open();
@@ -134,8 +132,6 @@ class ControlledInCharts {
   Projections projections() const { return projections_; }
 
  private:
-  static constexpr std::int64_t most = 10'000'000;
-
   /// Of an error in units of what is allowed at x and y.
   double mean_square(Chart<M> const& error, Point<M> const& x, Point<M> const& y) const {
     double sum = 0;

@@ -39,8 +39,8 @@ struct ChartScale<Product<A, B>> {
 /// |e_i| <= atol + rtol |scale_i| for the estimate e, RMS over components.
 /// evaluations  those of the stages, and one for the slope at x
 /// fails   Status::step_underflow if the step falls below 10 ulp of t, Status::nonlinear_fail if that is because stages
-///         cannot be solved, Status::max_steps after `most` trial steps in one advance, Status::diverged if the state
-///         or its slope is not finite
+///         cannot be solved, Status::max_steps after `most_trials` trial steps in one advance, Status::diverged if the
+///         state or its slope is not finite
 template <Problem P>
 class GaussControlled {
   using M = typename P::Space;
@@ -62,11 +62,8 @@ class GaussControlled {
   }
 
   Status advance(Point<M>& x, R t, R t_end) {
-    for (std::int64_t trials = work_.steps + work_.rejected; t < t_end;) {
-      if (Status const status = step(x, t, t_end); status != Status::ok) return status;
-      if (work_.steps + work_.rejected - trials > most) return Status::max_steps;
-    }
-    return Status::ok;
+    return in_own_steps(
+        t, t_end, [&](R& now) { return step(x, now, t_end); }, [&] { return work_.steps + work_.rejected; });
   }
   /// One accepted step, not beyond t_end; t moves.
   Status step(Point<M>& x, R& t, R t_end) {
@@ -76,7 +73,7 @@ class GaussControlled {
     bool unsolved = false;
     double const reach = policy_ == NormPolicy::relaxation ? relaxed_reach : 1 + 1e-10;
     R relaxed(0.0);  // gamma - 1 of a step that must land, and is taken again for it
-    for (std::int64_t trials = 0; trials < most; ++trials) {
+    for (std::int64_t trials = 0; trials < most_trials; ++trials) {
       auto const trial = size_.trial(t, t_end, reach, relaxed);
       R const h = trial.h;
       if (size_.underflows(trial, t)) return unsolved ? Status::nonlinear_fail : Status::step_underflow;
@@ -137,8 +134,6 @@ class GaussControlled {
   Projections projections() const { return projections_; }
 
  private:
-  static constexpr std::int64_t most = 10'000'000;
-
   /// The last step never was.
   void take_back() {
     memory_.carry = carry_;

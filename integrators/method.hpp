@@ -149,4 +149,19 @@ constexpr std::string_view refusal(Needs needs) {
   return "";
 }
 
+/// More trial steps than this, between two stops, are no solve: Status::max_steps.
+inline constexpr std::int64_t most_trials = 10'000'000;
+
+/// From t to t_end by steps of the method's own choosing.
+///   step(t)   one accepted step, or its failure; t moves
+///   trials()  how many it has tried so far
+template <class R, class Step, class Trials>
+POLHODE_INLINE Status in_own_steps(R t, R const& t_end, Step&& step, Trials&& trials) {
+  for (std::int64_t const before = trials(); t < t_end;) {
+    if (Status const status = step(t); status != Status::ok) return status;
+    if (trials() - before > most_trials) return Status::max_steps;
+  }
+  return Status::ok;
+}
+
 }  // namespace polhode

@@ -10,8 +10,8 @@ namespace polhode {
 
 /// Drives a pair (see EmbeddedPair) with error control per component: |e_i| <= atol + rtol max(|y_i|, |y_new,i|), RMS.
 ///
-/// fails   Status::step_underflow if the step falls below 10 ulp of t, Status::max_steps after `most` trial steps in
-/// one
+/// fails   Status::step_underflow if the step falls below 10 ulp of t, Status::max_steps after `most_trials` trial
+/// steps in one
 ///         advance, Status::diverged if the state or its slope is not finite
 ///
 /// keeps_inside: the stepper has interpolate(), for a pair with a continuous extension. It copies the slopes of every
@@ -42,11 +42,8 @@ class Controlled {
   }
 
   Status advance(Point<M>& x, R t, R t_end) {
-    for (std::int64_t trials = work_.steps + work_.rejected; t < t_end;) {
-      if (Status const status = step(x, t, t_end); status != Status::ok) return status;
-      if (work_.steps + work_.rejected - trials > most) return Status::max_steps;
-    }
-    return Status::ok;
+    return in_own_steps(
+        t, t_end, [&](R& now) { return step(x, now, t_end); }, [&] { return work_.steps + work_.rejected; });
   }
   /// One accepted step, not beyond t_end; t moves.
   Status step(Point<M>& x, R& t, R t_end) {
@@ -56,7 +53,7 @@ class Controlled {
     if (!size_.known()) start(x, t, t_end - t);
     double const reach = policy_ == NormPolicy::relaxation ? relaxed_reach : 1 + 1e-10;
     R relaxed(0.0);  // gamma - 1 of a step that must land, and is taken again for it
-    for (std::int64_t trials = 0; trials < most; ++trials) {
+    for (std::int64_t trials = 0; trials < most_trials; ++trials) {
       auto const trial = size_.trial(t, t_end, reach, relaxed);
       if (size_.underflows(trial, t)) return Status::step_underflow;
       auto&& frame = frame_.open();
@@ -129,8 +126,6 @@ class Controlled {
   Projections projections() const { return projections_; }
 
  private:
-  static constexpr std::int64_t most = 10'000'000;
-
   /// A plain problem is copied for the length of a trial, as in EqualSteps.
   using Field = std::conditional_t<std::is_trivially_copyable_v<P>, P const, P const&>;
 

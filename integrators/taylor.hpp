@@ -202,9 +202,8 @@ class TaylorStepper {
   }
 
   Status advance(Point<M>& x, R t, R t_end) {
-    while (t < t_end)
-      if (Status const status = step(x, t, t_end); status != Status::ok) return status;
-    return Status::ok;
+    return in_own_steps(
+        t, t_end, [&](R& now) { return step(x, now, t_end); }, [&] { return work_.steps + work_.rejected; });
   }
   /// To the end of the next step, or to t_end if that comes first.
   Status step(Point<M>& x, R& t, R t_end) {
