@@ -19,16 +19,27 @@ std::optional<double> number_or_null(Json const& json) {
   if (json.is_null()) return {};
   return json.get<double>();
 }
+/// get() would cast 1e300 to one, which is undefined.
+template <class Integer = std::int64_t>
+Integer integer(Json const& json) {
+  if (!json.is_number_integer()) throw std::invalid_argument("counts must be integers");
+  return json.get<Integer>();
+}
+std::vector<std::int64_t> integers(Json const& json) {
+  std::vector<std::int64_t> all;
+  for (Json const& one : json) all.push_back(integer(one));
+  return all;
+}
 std::optional<SampleValue> sample_or_null(Json const& json) {
   if (json.is_null()) return {};
-  return SampleValue{json.at("value").get<double>(), json.at("sample").get<std::int64_t>()};
+  return SampleValue{json.at("value").get<double>(), integer(json.at("sample"))};
 }
 
 EnsembleMetric metric_from(std::string const& name, Json const& json) {
   EnsembleMetric metric{.name = name,
                         .unit = json.at("unit"),
-                        .count = json.at("count"),
-                        .without = json.at("without"),
+                        .count = integer(json.at("count")),
+                        .without = integer(json.at("without")),
                         .mean = number_or_null(json.at("mean")),
                         .deviation = number_or_null(json.at("deviation")),
                         .least = sample_or_null(json.at("min")),
@@ -41,7 +52,7 @@ EnsembleMetric metric_from(std::string const& name, Json const& json) {
                                 number_or_null(q.at("high"))});
   for (Json const& worst : json.at("worst")) metric.worst.push_back(sample_or_null(worst).value());
   for (Json const& bin : json.at("histogram"))
-    metric.histogram.push_back({bin.at(0).get<double>(), bin.at(1).get<double>(), bin.at(2).get<std::int64_t>()});
+    metric.histogram.push_back({bin.at(0).get<double>(), bin.at(1).get<double>(), integer(bin.at(2))});
   return metric;
 }
 
@@ -59,7 +70,7 @@ Ensemble decoded(Json const& json) {
                 .h = json.at("h"),
                 .t_end = json.at("t_end"),
                 .disperse = json.at("disperse"),
-                .samples = statistics.at("samples"),
+                .samples = integer(statistics.at("samples")),
                 .in_lanes = json.at("in_lanes"),
                 .settle_angle = json.at("settle_angle"),
                 .endings = {},
@@ -67,13 +78,13 @@ Ensemble decoded(Json const& json) {
                 .seconds = timing.at("seconds"),
                 .rate = timing.at("body_steps_per_second"),
                 .share_of_plain_rk4 = number_or_null(timing.at("share_of_plain_rk4")),
-                .threads = timing.at("threads"),
-                .ranks = timing.at("ranks"),
-                .peak_memory = timing.at("peak_memory_bytes"),
+                .threads = integer<int>(timing.at("threads")),
+                .ranks = integer<int>(timing.at("ranks")),
+                .peak_memory = integer(timing.at("peak_memory_bytes")),
                 .meta = meta_from_json(json.at("provenance"))};
   for (auto const& [name, ending] : statistics.at("endings").items())
     read.endings.emplace_back(name,
-                              EndingStatistics{ending.at("count").get<std::int64_t>(), ending.at("first_samples")});
+                              EndingStatistics{integer(ending.at("count")), integers(ending.at("first_samples"))});
   for (auto const& [name, metric] : statistics.at("metrics").items()) read.metrics.push_back(metric_from(name, metric));
   return read;
 }

@@ -19,6 +19,7 @@
 #include "bench/trajectory.hpp"
 #include "problems/graph.hpp"
 #include "results/benchmarks.hpp"
+#include "results/ensemble_file.hpp"
 #include "results/golden.hpp"
 #include "results/store.hpp"
 #include "tests/small_vocabulary.hpp"
@@ -119,15 +120,21 @@ inline void benchmarks(std::string const& bytes) {
   } catch (std::invalid_argument const&) {
   }
 }
+inline void ensemble(std::string const& bytes) {
+  try {
+    static_cast<void>(results::ensemble_from(bytes));
+  } catch (std::invalid_argument const&) {
+  }
+}
 
 struct Target {
   std::string_view name;  ///< of its corpus, too
   void (*run)(std::string const& bytes);
 };
-inline constexpr std::array targets{Target{"suite", suite},           Target{"records", records},
-                                    Target{"trajectory", trajectory}, Target{"graph", graph},
-                                    Target{"golden", golden},         Target{"reference", reference},
-                                    Target{"catalogue", catalogue},   Target{"benchmarks", benchmarks}};
+inline constexpr std::array targets{
+    Target{"suite", suite},         Target{"records", records},       Target{"trajectory", trajectory},
+    Target{"graph", graph},         Target{"golden", golden},         Target{"reference", reference},
+    Target{"catalogue", catalogue}, Target{"benchmarks", benchmarks}, Target{"ensemble", ensemble}};
 
 inline Target const& target_named(std::string_view name) {
   for (Target const& target : targets)
