@@ -1,13 +1,13 @@
 #include "bench/cell.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 
 #include "bench/recorder.hpp"
 
 namespace polhode::bench {
-namespace {
 
 results::Status status_of(Status status) {
   switch (status) {
@@ -24,8 +24,6 @@ results::Status status_of(Status status) {
   }
   return results::Status::crashed;
 }
-
-}  // namespace
 
 std::vector<Column> columns_of(PreparedCell const& prepared) {
   std::vector<Column> columns;
@@ -171,11 +169,12 @@ NormPolicy policy_named(std::string_view name) {
   throw std::out_of_range("no norm policy " + std::string(name));
 }
 
-std::set<std::string> words_of(std::string const& variant) {
-  std::set<std::string> words;
+/// The words of a variant text, in its order.
+std::vector<std::string> words_of(std::string const& variant) {
+  std::vector<std::string> words;
   for (std::size_t from = 0; from < variant.size();) {
     std::size_t const to = std::min(variant.find(',', from), variant.size());
-    words.insert(variant.substr(from, to - from));
+    words.push_back(variant.substr(from, to - from));
     from = to + 1;
   }
   return words;
@@ -183,14 +182,9 @@ std::set<std::string> words_of(std::string const& variant) {
 
 /// A variant text without some of its words.
 std::string without(std::string const& variant, std::vector<std::string> const& dropped) {
-  std::string kept;
-  for (std::size_t from = 0; from < variant.size();) {
-    std::size_t const to = std::min(variant.find(',', from), variant.size());
-    std::string const word = variant.substr(from, to - from);
-    if (std::find(dropped.begin(), dropped.end(), word) == dropped.end()) kept += (kept.empty() ? "" : ",") + word;
-    from = to + 1;
-  }
-  return kept;
+  std::vector<std::string> kept = words_of(variant);
+  std::erase_if(kept, [&](std::string const& word) { return std::ranges::find(dropped, word) != dropped.end(); });
+  return fmt::format("{}", fmt::join(kept, ","));
 }
 
 /// A schedule is kept in memory: a slip in a period must not fill it.
@@ -206,10 +200,15 @@ void check_number_of_stops(Schedule const& schedule) {
 
 }  // namespace
 
+Choice choice_of(results::Cell const& cell) {
+  std::vector<std::string> const words = words_of(cell.variant);
+  return {.words = {words.begin(), words.end()}, .set = cell.set, .step = cell.h.value_or(0)};
+}
+
 PreparedCell prepare(results::Cell cell, double every) {
   check_words(vocabulary(), cell);
   PreparedCell prepared;
-  Choice const choice{.words = words_of(cell.variant), .set = cell.set, .step = cell.h.value_or(0)};
+  Choice const choice = choice_of(cell);
   try {
     prepared.problem = problem_named(cell.problem).choose(choice);
   } catch (ParameterError const& error) {
@@ -257,7 +256,8 @@ FoundReference References::of(PreparedCell const& prepared, double whole) {
     slot = found;
   }
   std::call_once(slot->made, [&] {
-    Choice const choice{.words = words_of(prepared.physics.variant), .set = prepared.physics.set};
+    Choice choice = choice_of(prepared.physics);
+    choice.step = 0;  // a reference has none
     auto const problem = problem_named(prepared.physics.problem).choose(choice);
     Schedule schedule = prepared.schedule;
     schedule.sample_period = problem->sample_period();

@@ -64,6 +64,11 @@ struct Measured {
   std::vector<Column> columns;  ///< of the history
 };
 
+/// What a problem is to be, by a cell's variant, parameters and step.
+Choice choice_of(results::Cell const& cell);
+/// How a method ended, as a record says it.
+results::Status status_of(Status status);
+
 /// Thrown by a run that was asked to stop: there is nothing to record.
 struct Interrupted {};
 

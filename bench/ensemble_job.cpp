@@ -20,34 +20,6 @@ std::int64_t parts_of(std::int64_t count, std::int64_t size) {
   return (count + size - 1) / size;
 }
 
-std::string_view word_of(Status status) {
-  switch (status) {
-    case Status::ok:
-      return "ok";
-    case Status::diverged:
-      return "diverged";
-    case Status::step_underflow:
-      return "step_underflow";
-    case Status::max_steps:
-      return "max_steps";
-    default:
-      return "nonlinear_fail";
-  }
-}
-
-std::set<std::string> words_in(std::string const& variant) {
-  std::set<std::string> words;
-  for (std::size_t from = 0; from < variant.size();) {
-    std::size_t const to = std::min(variant.find(',', from), variant.size());
-    words.insert(variant.substr(from, to - from));
-    from = to + 1;
-  }
-  return words;
-}
-Choice choice_of(results::Cell const& cell) {
-  return {.words = words_in(cell.variant), .set = cell.set, .step = cell.h.value_or(0)};
-}
-
 void check_control(results::Cell const& cell) {
   if (cell.rtol || cell.atol) throw UsageError("samples of an ensemble take equal steps: give --h, not --rtol");
   if (vocabulary().integrator(cell.integrator).rival)
@@ -190,7 +162,7 @@ EnsemblePart EnsembleJob::chunk(Bodies const& bodies, std::atomic<bool> const& s
 
 std::string EnsembleJob::ending_of(SampleResult const& result) const {
   if (result.refused) return "invalid";
-  if (result.status != Status::ok) return std::string(word_of(result.status));
+  if (result.status != Status::ok) return std::string(name_of(status_of(result.status)));
   bool const points = std::ranges::find(metrics_, Metric::settle_time) != metrics_.end();
   bool const settled = result.metrics[std::size_t(Metric::settle_time)] != SampleMetrics<double>::never;
   return points && !settled ? "never_settled" : "ok";

@@ -171,25 +171,11 @@ std::string contents(Document const& document, Interactive const& interactive) {
 std::string escape_html(std::string_view raw) {
   std::string out;
   for (char const c : one_line(raw)) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      case '\'':
-        out += "&#39;";
-        break;
-      default:
-        out += c;
-    }
+    std::string_view const entity = c == '"' ? "&quot;" : c == '\'' ? "&#39;" : entity_of(c);
+    if (entity.empty())
+      out += c;
+    else
+      out += entity;
   }
   return out;
 }

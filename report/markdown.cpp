@@ -83,13 +83,9 @@ std::string escape_markdown(std::string_view raw) {
     bool const inside = i > 0 && i + 1 < text.size() && is_word(text[i - 1]) && is_word(text[i + 1]);
     switch (c) {
       case '&':
-        out += "&amp;";
-        break;
       case '<':
-        out += "&lt;";
-        break;
       case '>':
-        out += "&gt;";
+        out += entity_of(c);
         break;
       case '_':  // between letters it is no emphasis, and names stay readable
         out += inside ? "_" : "\\_";

@@ -36,6 +36,9 @@ std::string shortened(std::vector<std::string> words, std::size_t most);
 /// "1 run", "2 runs".
 std::string counted(std::size_t n, std::string_view singular, std::string_view plural);
 
+/// What HTML and Markdown write for &, < and >; empty for every other character.
+std::string_view entity_of(char c);
+
 /// One line of valid UTF-8 without control characters: what every renderer may rely on.
 std::string one_line(std::string_view text);
 
