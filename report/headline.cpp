@@ -18,7 +18,24 @@ constexpr double rounding = 1e-13;
 
 struct Line {
   std::string_view integrator, formulation, label;
+
+  bool is(results::Cell const& c) const {
+    return c.integrator == integrator && c.formulation == formulation && c.policy == "none";
+  }
 };
+/// Few methods, own and rival, for accuracy against cost.
+constexpr Line raced[] = {{"rk4", "quaternion", "rk4"},
+                          {"dopri5", "quaternion", "dopri5"},
+                          {"cf4", "s3", "cf4 (on S3)"},
+                          {"gauss4", "quaternion", "gauss4"},
+                          {"odeint_dopri5", "quaternion", "Odeint dopri5"},
+                          {"cvode_adams", "quaternion", "CVODE Adams"}};
+
+/// The captured target without control, as the paper's data have it.
+bool is_captured_target(results::Cell const& c) {
+  return c.problem == "tether_capture" && has_word(c.variant, "free") && !is_aside(c) &&
+         !has_word(c.variant, "raw_q0") && c.set.empty();
+}
 
 /// Drift against time: four ways to treat the same equations.
 Panel drift_panel(Facts const& facts) {
@@ -33,15 +50,12 @@ Panel drift_panel(Facts const& facts) {
               .rounding = 0,
               .title = "Norm drift without projection"};
   for (Instance const& instance : facts.instances) {
-    auto const& c = instance.like();
-    if (c.problem != "tether_capture" || !has_word(c.variant, "free") || is_aside(c)) continue;
-    if (has_word(c.variant, "raw_q0") || !c.set.empty()) continue;
+    if (!is_captured_target(instance.like())) continue;
     for (Line const& line : lines) {
       for (Record const* run : instance.runs) {
         auto const& of = run->of;
         auto const* series = facts.series_of(*run, "drift");
-        bool const wanted = of.integrator == line.integrator && of.formulation == line.formulation && of.h == step;
-        if (!wanted || of.policy != "none" || !is_ok(*run) || !series) continue;
+        if (!line.is(of) || of.h != step || !is_ok(*run) || !series) continue;
         auto const t = column_of(*series, "t"), drift = column_of(*series, "norm_drift");
         if (!t || !drift) continue;
         Curve curve{std::string(line.label), facts.style_of(of), {}};
@@ -61,12 +75,6 @@ Panel drift_panel(Facts const& facts) {
 
 /// Error against cost on the free body: few methods, own and rival.
 Panel cost_panel(Facts const& facts) {
-  constexpr Line lines[] = {{"rk4", "quaternion", "rk4"},
-                            {"dopri5", "quaternion", "dopri5"},
-                            {"cf4", "s3", "cf4 (on S3)"},
-                            {"gauss4", "quaternion", "gauss4"},
-                            {"odeint_dopri5", "quaternion", "Odeint dopri5"},
-                            {"cvode_adams", "quaternion", "CVODE Adams"}};
   Instance const* instance = facts.headline(headlines[0]);
   Panel panel{.x = {"", true},
               .y = {"attitude error [rad]", true},
@@ -76,13 +84,11 @@ Panel cost_panel(Facts const& facts) {
   if (!instance) return panel;
   bool const timed = measure_of(*instance) == Measure::time;
   panel.x.label = timed ? "CPU time of the solve [s]" : "evaluations";
-  for (Line const& line : lines) {
+  for (Line const& line : raced) {
     Sweep const* shown = nullptr;
     auto const sweeps = instance->sweeps();
     for (Sweep const& sweep : sweeps) {
-      auto const& of = sweep.like();
-      bool const wanted = of.integrator == line.integrator && of.formulation == line.formulation;
-      if (wanted && of.policy == "none" && (!shown || of.h)) shown = &sweep;
+      if (line.is(sweep.like()) && (!shown || sweep.like().h)) shown = &sweep;
     }
     if (!shown) continue;
     Curve curve{std::string(line.label), facts.style_of(shown->like()), {}};
@@ -98,6 +104,40 @@ Panel cost_panel(Facts const& facts) {
     if (!curve.points.empty()) panel.curves.push_back(std::move(curve));
   }
   return panel;
+}
+
+/// What each method's norm, accuracy and work come to, in one row: nothing in it depends on the machine.
+Table headline_table(Facts const& facts) {
+  Table table{.name = "headline",
+              .caption = Text("Norm drift: the captured target, uncontrolled, without projection. The rest: the free "
+                              "body; evaluations of the field in the cheapest run that reaches the error."),
+              .columns = {{"method"},
+                          {"|q.q - 1|, h = 0.1 s", true},
+                          {"attitude error [rad], h = 0.1 s", true},
+                          {"evaluations to 1e-6 rad", true},
+                          {"to 1e-9 rad", true}},
+              .rows = {}};
+  Instance const* body = facts.headline(headlines[0]);
+  for (Line const& line : raced) {
+    std::optional<double> drift, error;
+    for (Record const* run : facts.runs) {
+      if (!line.is(run->of) || run->of.h != step || !is_ok(*run)) continue;
+      if (is_captured_target(run->of)) drift = finite(run->norm_drift_max);
+      if (body && std::ranges::find(body->runs, run) != body->runs.end()) error = finite(run->attitude_error_max);
+    }
+    std::vector<Entry> row{std::string(line.label), number(drift, 2), number(error, 2)};
+    for (double const target : {1e-6, 1e-9}) {
+      std::optional<Cost> least;
+      for (Sweep const& sweep : body ? body->sweeps() : std::vector<Sweep>{}) {
+        if (!line.is(sweep.like())) continue;
+        auto const cost = cheapest(sweep, target, Measure::evaluations);
+        if (cost && (!least || cost->measured < least->measured)) least = cost;
+      }
+      row.push_back(number(least ? std::optional(least->measured) : std::nullopt, 6));
+    }
+    if (drift || error) table.rows.push_back(std::move(row));
+  }
+  return table;
 }
 
 }  // namespace
@@ -120,6 +160,7 @@ void add_headline(Document& document, Facts const& facts) {
   figure.caption = Text(std::move(caption));
   figure.columns = std::max(1, static_cast<int>(figure.panels.size()));
   if (has_points(figure)) document.add(std::move(figure));
+  if (Table table = headline_table(facts); !table.rows.empty()) document.add(std::move(table));
 }
 
 }  // namespace polhode::report
