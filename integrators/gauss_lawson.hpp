@@ -147,8 +147,9 @@ struct LawsonStep {
     Q const e = frame_of(mean, turning, hc);
     Mat3<L> const full = matrix(e), turn{0.5 * full.e1, 0.5 * full.e2, 0.5 * full.e3};
 
-    Columns mu;  // in registers
+    Columns mu, damped_mu{};  // in registers
     unroll<s>([&](auto j) POLHODE_LAMBDA { mu.of[j] = (h * table.b[j]) * L::load(table.mu[j].data()); });
+    if (shifts) unroll<s>([&](auto j) POLHODE_LAMBDA { damped_mu.of[j] = L::load(memory.damped[j].data()); });
     alignas(64) double K[3][s], Kp[4][s];
     double const rate = abs_of(x.second.x) + abs_of(x.second.y) + abs_of(x.second.z);
     memory.greatest_rate = max_of(memory.greatest_rate, rate);
@@ -177,8 +178,8 @@ struct LawsonStep {
       if (shifts) [[unlikely]] {
         L const one = L::load(memory.damped_one.data());
         store(h * dw + memory.damped_for * w, K);
-        w_next = {begun.x * one + times(memory.damped, K[0]), begun.y * one + times(memory.damped, K[1]),
-                  begun.z * one + times(memory.damped, K[2])};
+        w_next = {begun.x * one + times(damped_mu, K[0]), begun.y * one + times(damped_mu, K[1]),
+                  begun.z * one + times(damped_mu, K[2])};
       } else {
         store(dw, K);
         w_next = {begun.x + times(mu, K[0]), begun.y + times(mu, K[1]), begun.z + times(mu, K[2])};
