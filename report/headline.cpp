@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <ranges>
 
 #include "report/sections.hpp"
 #include "report/text.hpp"
@@ -135,7 +136,8 @@ Table headline_table(Facts const& facts) {
       }
       row.push_back(number(least ? std::optional(least->measured) : std::nullopt, 6));
     }
-    if (drift || error) table.rows.push_back(std::move(row));
+    bool const known = std::ranges::any_of(row | std::views::drop(1), [](Entry const& e) { return e.text != absent; });
+    if (known) table.rows.push_back(std::move(row));
   }
   return table;
 }

@@ -34,10 +34,11 @@ void expect_same(std::string const& committed, std::string const& now) {
   char *end_a = nullptr, *end_b = nullptr;
   double const a = std::strtod(committed.c_str(), &end_a), b = std::strtod(now.c_str(), &end_b);
   bool const numbers = !committed.empty() && *end_a == '\0' && !now.empty() && *end_b == '\0';
-  if (!numbers)
+  if (!numbers) {
     EXPECT_EQ(committed, now);
-  else if (std::max(std::abs(a), std::abs(b)) > 1e-12)
+  } else if (std::max(std::abs(a), std::abs(b)) > 1e-12) {
     EXPECT_NEAR(a, b, 0.02 * std::abs(b));
+  }
 }
 void expect_same(Rows const& committed, Rows const& now) {
   ASSERT_EQ(committed.size(), now.size());
@@ -66,7 +67,7 @@ TEST(Headline, OfTheReadmeIsWhatARunGives) {
   Folder const folder;
   ASSERT_EQ(polhode(folder, "run headline --out results").code, 0);
   ASSERT_EQ(polhode(folder, "report results").code, 0);
-  fs::path const made = folder.path / "results";
+  fs::path const made = folder.path / "results/report";
   std::string const heading = "evaluations to 1e-6 rad";
   Rows const table = rows_of(table_from(text_of(made / "report.md"), heading), '|');
   EXPECT_GE(table.size(), 8U);
