@@ -307,7 +307,7 @@ TEST(CliFiles, ResultFolders) {
   expect_complaints(
       {
           {"report missing", 5, "missing: no such file or folder"},
-          {"report empty", 5, "empty: holds no results; give a folder that `polhode run` wrote"},
+          {"report empty", 5, "empty: holds no results; give a folder that `polhode run` or `polhode ensemble` wrote"},
           {"report text", 5, "text:1: not JSON (byte 2); a line must be one JSON object"},
           {"report damaged", 5, "damaged/a.jsonl:3: not JSON (byte 16); a line must be one JSON object"},
           {"report headless", 5, "headless/a.jsonl:1: kind: \"begin\"; the first line, and no other, must be a meta"},

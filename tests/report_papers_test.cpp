@@ -45,7 +45,8 @@ Contents sync() {
 TEST(ReportPapers, SectionsAppearWithTheirRunsAlone) {
   Folder const folder;
   std::string const without = markdown_of(full(), folder.path);
-  for (auto const* word : {"quaternion_sync", "group_consensus", "dead_zone"}) EXPECT_FALSE(contains(without, word));
+  std::string const sections = without.substr(without.find("## 2. "));  // the answer says what it cannot say
+  for (auto const* word : {"quaternion_sync", "group_consensus", "dead_zone"}) EXPECT_FALSE(contains(sections, word));
   EXPECT_TRUE(contains(without, "## 10. Measured orders"));
   EXPECT_TRUE(contains(without, "| gains | g1 strong tether, g2 weak tether | deduced |"));
   Folder const other{folder.path / "other"};

@@ -34,6 +34,14 @@ TEST_P(AdaptiveRival, AgreesWithTheReference) {
   }
 }
 
+#ifdef POLHODE_HAS_SUNDIALS
+/// A restart at every sample, at any tolerance: with its own first steps IDA got stuck at most of these.
+TEST(Ida, StartsAnewAtSamples) {
+  for (double const rtol : {1e-6, 1e-8, 1e-9, 3e-10, 1e-10, 5e-11, 1e-11})
+    EXPECT_EQ(a_cell("tether_capture", "quaternion", "ida").with_rtol(rtol).measured().record.reason, "") << rtol;
+}
+#endif
+
 TEST_P(AdaptiveRival, CountsWhatItDoes) {
   auto const record = a_cell("pd_slew", "quaternion", GetParam()).with_rtol(1e-8).measured().record;
   EXPECT_GT(*record.steps, 5);  // extrapolation takes few, long steps of many evaluations

@@ -64,6 +64,9 @@ class IdaMemory {
     if (std::exchange(fresh_, false)) {
       add_counters(before_);
       IDAReInit(memory_.get(), t, y_.get(), rate_.get());
+      // IDA's own first step, half the tolerance by the rate of change, can be so short that the round-off of an
+      // unknown of index 2, which grows as 1 / h, keeps Newton from resting.
+      IDASetInitStep(memory_.get(), 1e-5 * (t_end - t));
     }
     IDASetStopTime(memory_.get(), t_end);
     switch (IDASolve(memory_.get(), t_end, &t, y_.get(), rate_.get(), task)) {
