@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "tests/runs.hpp"
 
@@ -262,10 +261,8 @@ TEST(References, AreCertifiedToTwentyEightDigits) {
       if (!is_walked(problem.name, "")) continue;
       auto const cell =
           a_cell(problem.name, problem.formulations.front(), "gauss2").of_variant(variant).with_h(problem.step);
-      // Among the full tests its whole horizon, if it is that of one body and the default. Short ones tell of the
-      // others, networks' are dear.
-      bool const whole = std::getenv("POLHODE_FULL") != nullptr && variant.empty() &&
-                         bench::problem_named(problem.name).choose({})->body();
+      // Its whole horizon if it is that of one body and the default; short ones tell of the others, networks' are dear.
+      bool const whole = variant.empty() && bench::problem_named(problem.name).choose({})->body();
       auto const record =
           (whole ? cell : cell.until(std::min(5.0, std::max(1.0, 40 * problem.step)))).measured().record;
       if (!bench::prepare(cell.cell).problem->no_reference().empty()) {
