@@ -22,6 +22,7 @@
 #include "bench/ranks.hpp"
 #include "bench/run.hpp"
 #include "results/store.hpp"
+#include "results/whole_file.hpp"
 
 namespace polhode::bench {
 namespace {
@@ -61,16 +62,6 @@ struct EnsembleFlags {
   }
 };
 
-/// A file that is whole or not there at all.
-void write_file(std::filesystem::path const& file, std::string const& text) {
-  std::filesystem::path const half = file.string() + ".part";
-  std::ofstream out(half, std::ios::binary);
-  out << text;
-  if (!out.flush())
-    throw results::StoreError(fmt::format("{}: cannot be written: {}", half.string(), std::strerror(errno)));
-  out.close();
-  std::filesystem::rename(half, file);
-}
 std::ofstream opened(std::filesystem::path const& file) {
   std::ofstream out(file, std::ios::binary);
   if (!out) throw results::StoreError(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
@@ -139,7 +130,7 @@ int run_ensemble_verb(EnsembleFlags const& flags) {
   timing.peak_memory = peak_memory();
 
   std::string const json = ensemble_json(*job, statistics, timing).dump(1) + "\n";
-  if (!flags.out.empty()) write_file(std::filesystem::path(flags.out) / "ensemble.json", json);
+  if (!flags.out.empty()) results::write_whole(std::filesystem::path(flags.out) / results::ensemble_file, json);
   std::string const text =
       flags.json ? json : ensemble_text(*job, statistics, timing, results::outlet_of(fileno(stdout)));
   std::fwrite(text.data(), 1, text.size(), stdout);

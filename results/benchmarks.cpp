@@ -14,6 +14,7 @@
 #include <system_error>
 
 #include "results/store.hpp"
+#include "results/whole_file.hpp"
 
 namespace polhode::results {
 namespace {
@@ -115,18 +116,7 @@ void write_benchmarks(fs::path const& folder, Benchmarks const& benchmarks) {
   json["meta"] = to_json(benchmarks.meta);
   json[kind] = Json::array();
   for (Benchmark const& benchmark : benchmarks.all) json[kind].push_back(to_json(benchmark));
-  fs::path const file = folder / benchmarks_file;
-  fs::path const draft = folder / fmt::format("{}.{}", benchmarks_file, ::getpid());
-  std::error_code error;
-  fs::create_directories(folder, error);
-  errno = 0;
-  std::ofstream out(draft, std::ios::binary);
-  out << json.dump(1, ' ', false, Json::error_handler_t::replace) << '\n';
-  out.close();
-  if (!out)
-    throw StoreError(fmt::format("{}: cannot be written: {}", draft.string(), std::generic_category().message(errno)));
-  fs::rename(draft, file, error);
-  if (error) throw StoreError(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
+  write_whole(folder / benchmarks_file, json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace polhode::results

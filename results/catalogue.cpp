@@ -13,6 +13,7 @@
 
 #include "results/shallow.hpp"
 #include "results/store.hpp"
+#include "results/whole_file.hpp"
 
 namespace polhode::results {
 namespace {
@@ -90,18 +91,7 @@ Catalogue read_catalogue(fs::path const& folder) {
 }
 
 void write_catalogue(fs::path const& folder, std::string const& text) {
-  fs::path const file = folder / catalogue_file;
-  fs::path const draft = folder / fmt::format("{}.{}", catalogue_file, ::getpid());
-  errno = 0;
-  std::ofstream out(draft, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) {
-    throw StoreError(fmt::format("{}: cannot be written: {}", draft.string(), std::generic_category().message(errno)));
-  }
-  std::error_code error;
-  fs::rename(draft, file, error);
-  if (error) throw StoreError(fmt::format("{}: cannot be written: {}", file.string(), error.message()));
+  write_whole(folder / catalogue_file, text);
 }
 
 std::optional<std::string> merged_catalogues(std::vector<fs::path> const& folders) {

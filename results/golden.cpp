@@ -14,6 +14,7 @@
 #include "results/run_name.hpp"
 #include "results/shallow.hpp"
 #include "results/store.hpp"
+#include "results/whole_file.hpp"
 
 namespace polhode::results {
 namespace {
@@ -117,10 +118,6 @@ std::string changes_of(GoldenLine const& before, GoldenLine const& after) {
   return text;
 }
 
-[[noreturn]] void cannot_write(fs::path const& file, int reason) {
-  throw StoreError(fmt::format("{}: cannot be written: {}", file.string(), std::generic_category().message(reason)));
-}
-
 }  // namespace
 
 std::vector<std::string> const& golden_columns() {
@@ -217,17 +214,7 @@ std::vector<GoldenLine> read_golden(fs::path const& file) {
 void write_golden(fs::path const& file, std::string const& suite, std::vector<GoldenLine> const& lines) {
   std::string text = Json{{"schema", schema}, {"kind", "golden"}, {"suite", suite}}.dump() + "\n";
   for (GoldenLine const& line : lines) text += to_json(line).dump() + "\n";
-  std::error_code error;
-  if (file.has_parent_path()) fs::create_directories(file.parent_path(), error);
-  if (error) cannot_write(file, error.value());
-  fs::path const unfinished = file.string() + ".new";
-  errno = 0;
-  std::ofstream out(unfinished, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) cannot_write(unfinished, errno);
-  fs::rename(unfinished, file, error);
-  if (error) cannot_write(file, error.value());
+  write_whole(file, text);
 }
 
 GoldenLine settled(GoldenLine const& before, GoldenLine const& now) {
