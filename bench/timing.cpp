@@ -3,11 +3,12 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <random>
 
 #include "bench/allocations.hpp"
-#include "bench/vocabulary.hpp"
+#include "results/statistics.hpp"
 
 namespace polhode::bench {
 namespace {
@@ -24,35 +25,28 @@ class Collector final : public benchmark::BenchmarkReporter {
   std::map<std::string, std::vector<double>> seconds;
 };
 
-double median_of_sorted(std::vector<double> const& sorted) {
-  std::size_t const n = sorted.size();
-  return n % 2 == 1 ? sorted[n / 2] : (sorted[n / 2 - 1] + sorted[n / 2]) / 2;
+/// Repetitions in random order: Google Benchmark can be told by a flag alone.
+void interleave_repetitions() {
+  static std::string program = "polhode";  // it keeps the pointer
+  std::string flag = "--benchmark_enable_random_interleaving=true";
+  std::array<char*, 3> words{program.data(), flag.data(), nullptr};
+  int count = 2;
+  benchmark::Initialize(&count, words.data());
 }
 
 }  // namespace
 
-void initialise_timer(std::vector<std::string> const& flags) {
-  std::vector<std::string> words{"polhode", "--benchmark_enable_random_interleaving=true"};
-  words.insert(words.end(), flags.begin(), flags.end());
-  std::vector<char*> argv;
-  for (std::string& word : words) argv.push_back(word.data());
-  int argc = int(argv.size());
-  benchmark::Initialize(&argc, argv.data());
-  if (argc > 1) throw UsageError("Google Benchmark does not know the flag " + quote(argv[1]));
-}
-
 results::CpuTime bootstrap(std::vector<double> values) {
   results::CpuTime time{.repetitions = int(values.size()), .samples = values};
-  std::sort(values.begin(), values.end());
-  time.median = median_of_sorted(values);
+  time.median = results::median(values);
+  std::ranges::sort(values);  // the interval does not depend on the order of the repetitions
   constexpr int resamples = 1000;
   std::mt19937 random(1);
   std::uniform_int_distribution<std::size_t> pick(0, values.size() - 1);
   std::vector<double> medians, sample(values.size());
   for (int i = 0; i < resamples; ++i) {
     for (double& x : sample) x = values[pick(random)];
-    std::sort(sample.begin(), sample.end());
-    medians.push_back(median_of_sorted(sample));
+    medians.push_back(results::median(sample));
   }
   std::sort(medians.begin(), medians.end());
   time.low = medians[std::size_t(0.025 * resamples)];
@@ -63,6 +57,7 @@ results::CpuTime bootstrap(std::vector<double> values) {
 std::vector<TimedResult> time_cells(std::vector<TimedCell> const& cells, Timing const& timing,
                                     std::atomic<bool> const& stop, std::function<void()> const& progress) {
   std::vector<TimedResult> results(cells.size());
+  interleave_repetitions();
   benchmark::ClearRegisteredBenchmarks();
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (!cells[i].solve || stop) continue;
@@ -73,14 +68,16 @@ std::vector<TimedResult> time_cells(std::vector<TimedCell> const& cells, Timing 
     solve.solve();
     results[i].allocations = allocations_of_this_thread() - before;
     benchmark::RegisterBenchmark(cells[i].cell.c_str(),
-                                 [&solve, &progress, &stop](benchmark::State& state) {
+                                 [&, left = timing.repetitions](benchmark::State& state) mutable {
                                    if (stop) state.SkipWithError("interrupted");
                                    for (auto _ : state) benchmark::DoNotOptimize(solve.solve());
-                                   progress();
+                                   if (left-- > 0) progress();  // trials of how long a repetition is come on top
                                  })
         ->MinTime(timing.min_time)
         ->Repetitions(timing.repetitions);
   }
+  if (stop || std::ranges::none_of(cells, [](TimedCell const& cell) { return cell.solve != nullptr; }))
+    return results;  // Google Benchmark would complain of an empty list
   Collector collector;
   benchmark::RunSpecifiedBenchmarks(&collector, nullptr, "all");
   for (std::size_t i = 0; i < cells.size(); ++i) {

@@ -25,11 +25,8 @@ struct TimedResult {
   std::optional<std::int64_t> allocations;  ///< in one solve
 };
 
-/// Hands flags (--benchmark_...) to Google Benchmark. Throws UsageError for one that it does not know.
-void initialise_timer(std::vector<std::string> const& flags);
-
-/// Times the cells, one at a time on this thread. progress() is called after each repetition of each cell; once `stop`
-/// is set, what is left is skipped.
+/// Times the cells, one at a time on this thread. progress() is called as many times for each cell as there are
+/// repetitions; once `stop` is set, what is left is skipped.
 std::vector<TimedResult> time_cells(std::vector<TimedCell> const& cells, Timing const& timing,
                                     std::atomic<bool> const& stop, std::function<void()> const& progress);
 
