@@ -2,16 +2,22 @@
 // tables list every file of their folder, links lead somewhere, and the lines for a clone stand where they say.
 #include <gmock/gmock.h>
 
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <regex>
+#include <set>
+#include <sstream>
 #include <string>
+#include <vector>
 
 namespace {
 
 namespace fs = std::filesystem;
+using testing::Contains;
 using testing::HasSubstr;
+using testing::UnorderedElementsAre;
 
 fs::path const root = POLHODE_SOURCE_DIR;
 
@@ -65,15 +71,67 @@ TEST(Readme, TablesListEveryHeaderOfTheirFolder) {
     EXPECT_GT(headers, 30) << folder;
   }
 }
+
+// ---- Links ----------------------------------------------------------------------------------------------------------
+
+/// Markdown without its blocks of code.
+std::string prose(std::string const& text) {
+  std::istringstream in(text);
+  std::string kept;
+  bool code = false;
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with("```"))
+      code = !code;
+    else if (!code)
+      kept += line + '\n';
+  }
+  return kept;
+}
+/// The anchors of its headings, as GitHub makes them: small letters, hyphens for blanks, no other signs.
+std::set<std::string> anchors(std::string const& text) {
+  static std::regex const heading("(^|\n)#+ ([^\n]+)");
+  std::set<std::string> all;
+  std::string const kept = prose(text);
+  for (std::sregex_iterator at(kept.begin(), kept.end(), heading), end; at != end; ++at) {
+    std::string anchor;
+    for (char const c : (*at)[2].str())
+      if (std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' || c == ' ')
+        anchor += c == ' ' ? '-' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    all.insert(anchor);
+  }
+  return all;
+}
+/// Every Markdown file of the sources, from the root.
+std::vector<fs::path> documents() {
+  std::set<std::string> const not_ours{".git", "build", "node_modules", "polhode-results"};
+  std::vector<fs::path> all;
+  for (auto entry = fs::recursive_directory_iterator(root); entry != fs::recursive_directory_iterator(); ++entry) {
+    if (not_ours.contains(entry->path().filename())) entry.disable_recursion_pending();
+    if (entry->path().extension() == ".md") all.push_back(fs::relative(entry->path(), root));
+  }
+  return all;
+}
+
+TEST(Readme, AnchorsAreThoseOfHeadings) {
+  EXPECT_THAT(anchors("# One, `two`\n```\n# no\n```\n## The x-y_z part\n"),
+              UnorderedElementsAre("one-two", "the-x-y_z-part"));
+}
 TEST(Readme, LinksLeadSomewhere) {
-  std::regex const link(R"(\]\(([^)#:]+)(#[^)]*)?\))");  // of this repository: without a scheme
-  int links = 0;
-  for (fs::path const folder : {"", "bench", "integrators", "problems", "report", "results", "tests"}) {
-    std::string const text = contents(folder / "README.md");
-    for (std::sregex_iterator at(text.begin(), text.end(), link), end; at != end; ++at, ++links)
-      EXPECT_TRUE(fs::exists(root / folder / (*at)[1].str())) << (folder / "README.md") << ": " << (*at)[1];
+  static std::regex const code("`[^`\n]*`");
+  static std::regex const link(R"(\]\(([^)\s#:]*)(#([^)\s]+))?\))");  // of this repository: without a scheme
+  int links = 0, to_headings = 0;
+  for (fs::path const& document : documents()) {
+    std::string const text = std::regex_replace(prose(contents(document)), code, "``");
+    for (std::sregex_iterator at(text.begin(), text.end(), link), end; at != end; ++at, ++links) {
+      fs::path const target = (*at)[1].length() == 0 ? document : document.parent_path() / (*at)[1].str();
+      EXPECT_TRUE(fs::exists(root / target)) << document << ": " << at->str();
+      if ((*at)[3].length() == 0) continue;
+      EXPECT_THAT(anchors(contents(target)), Contains((*at)[3].str())) << document << ": " << at->str();
+      ++to_headings;
+    }
   }
   EXPECT_GT(links, 100);
+  EXPECT_GT(to_headings, 5);
 }
 
 }  // namespace
