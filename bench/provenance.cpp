@@ -13,7 +13,6 @@
 #include <ctime>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "bench/additions.hpp"
 #include "build_info.hpp"  // written by the build: version, commit, flags
@@ -28,12 +27,6 @@
 namespace polhode::bench {
 namespace {
 
-std::string contents(std::filesystem::path const& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 std::string first_line(std::filesystem::path const& file) {
   std::ifstream in(file);
   std::string line;
@@ -109,7 +102,10 @@ std::string version_text() {
 }
 
 std::string const& build_id() {
-  static std::string const id = results::hash_of(contents("/proc/self/exe"));
+  static std::string const id = [] {
+    std::ifstream program("/proc/self/exe", std::ios::binary);
+    return results::hash_of(program);
+  }();
   return id;
 }
 

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <istream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
@@ -56,6 +57,21 @@ std::string canonical(std::map<std::string, std::vector<double>> const& set) {
   return text + "}";
 }
 
+/// Fowler, Noll and Vo's hash of 64 bits, as it goes.
+class Fnv1a {
+ public:
+  void take(std::string_view text) {
+    for (char const c : text) {
+      state_ ^= static_cast<unsigned char>(c);
+      state_ *= 0x100000001b3;
+    }
+  }
+  std::string digits() const { return fmt::format("{:016x}", state_); }
+
+ private:
+  std::uint64_t state_ = 0xcbf29ce484222325;
+};
+
 }  // namespace
 
 std::string_view name_of(Status status) {
@@ -83,12 +99,16 @@ std::string canonical_text(Cell const& cell) {
 }
 
 std::string hash_of(std::string_view text) {
-  std::uint64_t hash = 0xcbf29ce484222325;
-  for (char const c : text) {
-    hash ^= static_cast<unsigned char>(c);
-    hash *= 0x100000001b3;
-  }
-  return fmt::format("{:016x}", hash);
+  Fnv1a hash;
+  hash.take(text);
+  return hash.digits();
+}
+
+std::string hash_of(std::istream& in) {
+  Fnv1a hash;
+  std::vector<char> block(1 << 16);
+  while (in.read(block.data(), std::ssize(block)), in.gcount() > 0) hash.take({block.data(), std::size_t(in.gcount())});
+  return hash.digits();
 }
 
 std::string cell_id(Cell const& cell) {

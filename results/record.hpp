@@ -3,6 +3,7 @@
 /// Everything downstream (JSON Lines, CSV, expectations, tables) goes through `for_each_field`, so a field is added
 /// here and nowhere else. SI units, radians. What does not apply is null, never zero.
 #include <cstdint>
+#include <iosfwd>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -69,6 +70,8 @@ void for_each_cell_field(C& cell, Visit&& visit) {
 std::string canonical_text(Cell const& cell);
 /// 16 hexadecimal digits of a text: FNV-1a, 64 bits. Tells texts apart; keeps no secrets.
 std::string hash_of(std::string_view text);
+/// The same of all that a stream gives, however long, in constant memory.
+std::string hash_of(std::istream& in);
 /// hash_of the canonical text.
 std::string cell_id(Cell const& cell);
 

@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <set>
+#include <sstream>
 
 #include "tests/record_samples.hpp"
 
@@ -65,6 +66,16 @@ TEST(Cell, EveryMemberChangesTheId) {
     EXPECT_TRUE(ids.insert(cell_id(changed)).second) << name;
   });
   EXPECT_EQ(ids.size(), changes.size() + 1);
+}
+
+TEST(Hash, OfAStreamIsThatOfItsText) {
+  EXPECT_EQ(hash_of("foobar"), "85944171f73967e8");  // a known answer of FNV-1a, 64 bits
+  for (std::size_t const size : {0, 1, 1 << 16, 200'000}) {
+    std::string text(size, 'a');
+    if (size > 0) text.back() = '\n';
+    std::istringstream in(text);
+    EXPECT_EQ(hash_of(in), hash_of(text)) << size;
+  }
 }
 
 TEST(Cell, WhatLooksAlikeHasAnIdOfItsOwn) {
