@@ -90,6 +90,7 @@ struct MethodInfo {
   std::string_view not_built = "";      ///< why this binary refuses it
 };
 
+/// What bind() returns, bound to problem P: see the top of this file. work() and projections() count since bind.
 template <class T, class P>
 concept StepperFor = requires(T s, T const c, Point<typename P::Space> x, Real<typename P::Space::Scalar> t) {
   { s.advance(x, t, t) } -> std::same_as<Status>;
@@ -97,14 +98,18 @@ concept StepperFor = requires(T s, T const c, Point<typename P::Space> x, Real<t
   { c.projections() } -> std::same_as<Projections>;
   s.restart();
 };
+/// A method that takes equal steps on problem P.
 template <class I, class P>
 concept RunsFixed = Problem<P> && requires(I method, P const& p) {
   { method.bind(p, FixedStep{}, NormPolicy::none) } -> StepperFor<P>;
 };
+/// A method that chooses its steps on problem P.
 template <class I, class P>
 concept RunsAdaptive = Problem<P> && requires(I method, P const& p) {
   { method.bind(p, Adaptive{}, NormPolicy::none) } -> StepperFor<P>;
 };
+/// A method for problem P: `info` and bind(), for equal steps, its own, or both. A complete one, by its tableau and
+/// with a step of its own, is tests/consumer/heun.hpp; integrators/README.md goes through it.
 template <class I, class P>
 concept IntegratorFor = RunsFixed<I, P> || RunsAdaptive<I, P>;
 

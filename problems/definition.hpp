@@ -51,7 +51,8 @@ struct History {
   std::vector<double> column(std::string const& name) const;
 };
 
-/// D(choice) is a problem as chosen; it throws ParameterError when the choice cannot be.
+/// What the catalogue asks of a problem: D(choice) is the problem as chosen; it throws ParameterError when the choice
+/// cannot be. A complete one is tests/consumer/damped_body.hpp; problems/README.md goes through it.
 ///   info()                 the facts above
 ///   parameters()           name, unit, default, rule
 ///   horizon, sample_period [s]; 0 = continuous control

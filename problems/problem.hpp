@@ -9,7 +9,8 @@
 namespace polhode {
 
 /// p(t, x) returns the velocity at time t [s] in state x; on many bodies p(t, x, v) writes it. initial() is the state
-/// at 0 s.
+/// at 0 s. A complete one, with what the catalogue asks of it (Definition), is tests/consumer/damped_body.hpp;
+/// problems/README.md goes through it.
 template <class P>
 concept Problem = Space<typename P::Space> &&
     requires(P const p, typename P::Space::Scalar t, Point<typename P::Space> const x, Velocity<typename P::Space> v) {

@@ -46,7 +46,7 @@ std::vector<std::string> const everywhere{"problems", "integrators", "bench", "r
 
 /// Types and concepts of `lines`, outside namespace detail, that no comment introduces: as "line: text".
 std::vector<std::string> undocumented(Lines const& lines) {
-  static std::regex const type(R"((class|struct|enum class|concept) [A-Z]\w*[^<;(]*(\{.*|$))");
+  static std::regex const type(R"((class|struct|enum class) [A-Z]\w*[^<;(]*(\{.*|$)|concept .*)");
   static std::regex const introduction(R"((template|requires|  requires|    ).*)");
   std::vector<std::string> found;
   bool hidden = false;
@@ -65,6 +65,7 @@ std::vector<std::string> undocumented(Lines const& lines) {
 TEST(House, FindsATypeWithoutAComment) {
   EXPECT_THAT(undocumented({"/// One.", "template <class T>", "struct A {", "};"}), IsEmpty());
   EXPECT_THAT(undocumented({"template <class T>", "struct A {", "};"}), testing::SizeIs(1));
+  EXPECT_THAT(undocumented({"template <class T>", "concept A = requires(T t) { t(); };"}), testing::SizeIs(1));
   EXPECT_THAT(undocumented({"namespace detail {", "struct A {};", "}  // namespace detail"}), IsEmpty());
 }
 
@@ -124,7 +125,7 @@ TEST(House, NothingStandsInTwoFiles) {
 
 // ---- The paths of CONTRIBUTING.md -----------------------------------------------------------------------------------
 
-/// `file`: `name`, `name` ... of the table below <!-- paths -->.
+/// `file`: `name`, `name` ... of the tables below <!-- paths -->.
 TEST(House, ThePathsOfContributingExist) {
   fs::path const root = POLHODE_SOURCE_DIR;
   static std::regex const quoted("`([^`]+)`");
@@ -132,7 +133,7 @@ TEST(House, ThePathsOfContributingExist) {
   int names = 0;
   for (std::string const& line : lines_of(root / "CONTRIBUTING.md")) {
     if (line == "<!-- paths -->") inside = true;
-    if (inside && line.empty()) break;
+    if (line.empty()) inside = false;
     std::string text;
     for (std::sregex_iterator at(line.begin(), line.end(), quoted), end; inside && at != end; ++at) {
       std::string const word = (*at)[1];
