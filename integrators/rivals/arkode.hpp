@@ -2,14 +2,13 @@
 /// SUNDIALS ARKODE's Runge-Kutta modules behind our face, unmodified, at their default controller: the explicit one
 /// (ERKStep), and the additive one (ARKStep) as a diagonally implicit method. Memory is made in bind and lives across
 /// advance calls. double, flat coordinates.   Source: Reynolds et al. (2023), ACM TOMS 49, 16; SUNDIALS 6.4
-#include "integrators/rivals/jacobian.hpp"
 #include "integrators/rivals/sundials.hpp"
 
 #ifdef POLHODE_HAS_SUNDIALS
 #include <arkode/arkode_arkstep.h>
 #include <arkode/arkode_erkstep.h>
-#include <sunlinsol/sunlinsol_dense.h>
-#include <sunmatrix/sunmatrix_dense.h>
+
+#include <utility>
 #endif
 
 namespace polhode {
@@ -34,155 +33,127 @@ inline Status arkode_status(int code) {
   }
 }
 
-/// Explicit; restart() re-initialises at the next call.
-template <Problem P>
-class ErkStepper {
-  using M = typename P::Space;
-
+/// ERKStep's objects and their lifetimes: explicit, the default table of an order.
+class ErkMemory {
  public:
-  ErkStepper(int order, P const& problem, Adaptive control, NormPolicy) : ErkStepper(order, problem) {
-    require(ERKStepSStolerances(memory_.get(), control.rtol, control.atol));
+  /// Throws std::bad_alloc if the library cannot make its memory.
+  ErkMemory(int order, Adaptive control, ARKRhsFn field, SundialsJacobian, void* user, int size)
+      : ErkMemory(order, field, user, size) {
+    require_made(ERKStepSStolerances(memory_.get(), control.rtol, control.atol));
   }
-  ErkStepper(int order, P const& problem, FixedStep control, NormPolicy) : ErkStepper(order, problem) {
-    require(ERKStepSetFixedStep(memory_.get(), control.h));
+  ErkMemory(int order, FixedStep control, ARKRhsFn field, SundialsJacobian, void* user, int size)
+      : ErkMemory(order, field, user, size) {
+    require_made(ERKStepSetFixedStep(memory_.get(), control.h));
     fixed_ = control.h;
   }
 
-  /// x is read at a restart; between restarts ARKODE's own state goes on.
-  Status advance(Point<M>& x, double t, double t_end) { return go(x, t, t_end, ARK_NORMAL); }
-  Status step(Point<M>& x, double& t, double t_end) { return go(x, t, t_end, ARK_ONE_STEP); }
+  double* state() { return numbers_of(y_); }
   void restart() { fresh_ = true; }
-  Work work() const {
-    Work sum = before_;
-    add_counters(sum);
-    return sum;
-  }
-  Projections projections() const { return {}; }
 
- private:
-  ErkStepper(int order, P const& problem) : field_(new LibraryField<P>(problem)) {
-    y_.reset(N_VNew_Serial(field_->size(), context_.get()));
-    if (!y_) throw std::bad_alloc();
-    N_VConst(0, y_.get());
-    memory_.reset(ERKStepCreate(field, 0, y_.get(), context_.get()));
-    if (!memory_) throw std::bad_alloc();
-    require(ERKStepSetUserData(memory_.get(), field_.get()));
-    require(ERKStepSetOrder(memory_.get(), order));
-    require(ERKStepSetMaxNumSteps(memory_.get(), most_steps));
-    require(ERKStepSetErrFile(memory_.get(), nullptr));  // a failure is a status, not a message
-  }
-  static void require(int code) {
-    if (code != ARK_SUCCESS) throw std::bad_alloc();
-  }
-  Status go(Point<M>& x, double& t, double t_end, int task) {
-    store(x, N_VGetArrayPointer(y_.get()));
+  /// Goes on to t_end, or by one step of ARKODE's choice; t moves.
+  Status advance(double& t, double t_end, bool one_step) {
     if (std::exchange(fresh_, false)) {
-      add_counters(before_);
-      ERKStepReInit(memory_.get(), field, t, y_.get());
-      // A re-initialised fixed step was shortened by the last stop time.
-      if (fixed_ > 0) ERKStepSetFixedStep(memory_.get(), fixed_);
+      counters().add_to(before_);
+      ERKStepReInit(memory_.get(), field_, t, y_.get());
+      if (fixed_ > 0) ERKStepSetFixedStep(memory_.get(), fixed_);  // the last stop time shortened it
     }
     ERKStepSetStopTime(memory_.get(), t_end);
-    int const code = ERKStepEvolve(memory_.get(), t_end, y_.get(), &t, task);
-    load(x, N_VGetArrayPointer(y_.get()));
-    Status const status = arkode_status(code);
-    return status == Status::ok && !all_finite(x) ? Status::diverged : status;
+    return arkode_status(ERKStepEvolve(memory_.get(), t_end, y_.get(), &t, one_step ? ARK_ONE_STEP : ARK_NORMAL));
   }
-  void add_counters(Work& sum) const {
-    long steps = 0, failures = 0;
-    ERKStepGetNumSteps(memory_.get(), &steps);
-    ERKStepGetNumErrTestFails(memory_.get(), &failures);
-    sum.steps += steps;
-    sum.rejected += failures;
-  }
-  static int field(double t, N_Vector y, N_Vector dydt, void* field) {
-    (*static_cast<LibraryField<P> const*>(field))(t, N_VGetArrayPointer(y), N_VGetArrayPointer(dydt));
-    return 0;
+  Work work() const {
+    Work sum = before_;
+    counters().add_to(sum);
+    return sum;
   }
 
-  static constexpr long most_steps = 10'000'000;
-  std::unique_ptr<LibraryField<P>> field_;
-  SundialsOwned<SUNContext> context_ = make_sundials_context();
+ private:
+  ErkMemory(int order, ARKRhsFn field, void* user, int size)
+      : field_(field), y_(make_vector(size, context_)), memory_(ERKStepCreate(field, 0, y_.get(), context_.get())) {
+    if (!memory_) throw std::bad_alloc();
+    void* const ark = memory_.get();
+    require_made(ERKStepSetUserData(ark, user));
+    require_made(ERKStepSetOrder(ark, order));
+    require_made(ERKStepSetMaxNumSteps(ark, most_trials));
+    require_made(ERKStepSetErrFile(ark, nullptr));  // a failure is a status, not a message
+  }
+  SundialsCounters counters() const {
+    SundialsCounters now;
+    ERKStepGetNumSteps(memory_.get(), &now.steps);
+    ERKStepGetNumErrTestFails(memory_.get(), &now.failures);
+    return now;
+  }
+
+  ARKRhsFn field_;
+  SundialsOwned<SUNContext> context_ = make_sundials_context();  // outlives all that is made in it
   SundialsOwned<N_Vector> y_;
   SundialsMemory<ERKStepFree> memory_;
-  double fixed_ = 0;
+  double fixed_ = 0;  ///< equal steps of [s]; 0: steps of ARKODE's choice
   bool fresh_ = true;
   Work before_;
 };
 
-/// Diagonally implicit, by Newton with a dense Jacobian: the problem's own, or difference quotients. A restart takes x
-/// over and keeps the step size.
-template <Problem P>
-class DirkStepper {
-  using M = typename P::Space;
-
+/// ARKStep's: diagonally implicit, by Newton with a dense Jacobian, null: difference quotients. A restart takes the
+/// state over and keeps the step size.
+class DirkMemory {
  public:
-  DirkStepper(ARKODE_DIRKTableID table, P const& problem, Adaptive control, NormPolicy) : DirkStepper(table, problem) {
-    require(ARKStepSStolerances(memory_.get(), control.rtol, control.atol));
+  /// Throws std::bad_alloc if the library cannot make its memory.
+  DirkMemory(ARKODE_DIRKTableID table, Adaptive control, ARKRhsFn field, SundialsJacobian jacobian, void* user,
+             int size)
+      : DirkMemory(table, field, jacobian, user, size) {
+    require_made(ARKStepSStolerances(memory_.get(), control.rtol, control.atol));
   }
   /// Stage equations are solved to round-off: they have no other tolerance to go by.
-  DirkStepper(ARKODE_DIRKTableID table, P const& problem, FixedStep control, NormPolicy) : DirkStepper(table, problem) {
+  DirkMemory(ARKODE_DIRKTableID table, FixedStep control, ARKRhsFn field, SundialsJacobian jacobian, void* user,
+             int size)
+      : DirkMemory(table, field, jacobian, user, size) {
     constexpr double round_off = 1e-14;
     constexpr int most_iterations = 20;
-    require(ARKStepSStolerances(memory_.get(), round_off, round_off));
-    require(ARKStepSetMaxNonlinIters(memory_.get(), most_iterations));
-    require(ARKStepSetFixedStep(memory_.get(), control.h));
+    require_made(ARKStepSStolerances(memory_.get(), round_off, round_off));
+    require_made(ARKStepSetMaxNonlinIters(memory_.get(), most_iterations));
+    require_made(ARKStepSetFixedStep(memory_.get(), control.h));
     fixed_ = control.h;
   }
 
-  /// x is read at a restart; between restarts ARKODE's own state goes on.
-  Status advance(Point<M>& x, double t, double t_end) { return go(x, t, t_end, most_steps); }
-  Status step(Point<M>& x, double& t, double t_end) { return go(x, t, t_end, 1); }
+  double* state() { return numbers_of(y_); }
   void restart() {
     if (start_ == Start::none) start_ = Start::here;
   }
   /// A new run: the step size is forgotten, too.
   void begin() { start_ = Start::anew; }
+
+  /// Goes on to t_end, or by one step of ARKODE's choice, which moves t. ARKODE would go on where it no longer does.
+  Status advance(double& t, double t_end, bool one_step) {
+    start(t);
+    ARKStepSetStopTime(memory_.get(), t_end);
+    auto const step = [&](double& now) {
+      double const before = now;
+      Status const status = arkode_status(ARKStepEvolve(memory_.get(), t_end, y_.get(), &now, ARK_ONE_STEP));
+      ++tried_;
+      return status == Status::ok && now == before ? Status::step_underflow : status;
+    };
+    return one_step ? step(t) : in_own_steps(t, t_end, step, [&] { return tried_; });
+  }
   Work work() const {
     Work sum = before_;
-    add_counters(sum);
+    counters().add_to(sum);
     return sum;
   }
-  Projections projections() const { return {}; }
 
  private:
   enum class Start { none, here, anew };
 
-  DirkStepper(ARKODE_DIRKTableID table, P const& problem) : field_(new LibraryField<P>(problem)) {
-    int const size = field_->size();
-    y_.reset(N_VNew_Serial(size, context_.get()));
-    matrix_.reset(SUNDenseMatrix(size, size, context_.get()));
-    if (!y_ || !matrix_) throw std::bad_alloc();
-    N_VConst(0, y_.get());
-    linear_.reset(SUNLinSol_Dense(y_.get(), matrix_.get(), context_.get()));
-    memory_.reset(ARKStepCreate(nullptr, field, 0, y_.get(), context_.get()));
-    if (!linear_ || !memory_) throw std::bad_alloc();
+  DirkMemory(ARKODE_DIRKTableID table, ARKRhsFn field, SundialsJacobian jacobian, void* user, int size)
+      : field_(field),
+        y_(make_vector(size, context_)),
+        memory_(ARKStepCreate(nullptr, field, 0, y_.get(), context_.get())) {
+    if (!memory_) throw std::bad_alloc();
+    dense_.make(y_, context_);
     void* const ark = memory_.get();
-    require(ARKStepSetErrFile(ark, nullptr));  // a failure is a status, not a message
-    require(ARKStepSetUserData(ark, field_.get()));
-    require(ARKStepSetTableNum(ark, table, ARKODE_ERK_NONE));
-    require(ARKStepSetLinearSolver(ark, linear_.get(), matrix_.get()));
-    if constexpr (DifferentiableProblem<P>)
-      if (problem.has_jacobian()) require(ARKStepSetJacFn(ark, jacobian));
-  }
-  static void require(int code) {
-    if (code != ARK_SUCCESS) throw std::bad_alloc();
-  }
-  /// At most `steps` towards t_end. ARKODE would go on where a step no longer moves t.
-  Status go(Point<M>& x, double& t, double t_end, std::int64_t steps) {
-    store(x, N_VGetArrayPointer(y_.get()));
-    start(t);
-    ARKStepSetStopTime(memory_.get(), t_end);
-    Status status = Status::ok;
-    for (std::int64_t i = 0; i < steps && t < t_end && status == Status::ok; ++i) {
-      double const before = t;
-      status = arkode_status(ARKStepEvolve(memory_.get(), t_end, y_.get(), &t, ARK_ONE_STEP));
-      if (status == Status::ok && t == before) status = Status::step_underflow;
-    }
-    load(x, N_VGetArrayPointer(y_.get()));
-    if (status != Status::ok) return status;
-    if (!all_finite(x)) return Status::diverged;
-    return t < t_end && steps > 1 ? Status::max_steps : Status::ok;
+    require_made(ARKStepSetErrFile(ark, nullptr));  // a failure is a status, not a message
+    require_made(ARKStepSetUserData(ark, user));
+    require_made(ARKStepSetTableNum(ark, table, ARKODE_ERK_NONE));
+    require_made(ARKStepSetLinearSolver(ark, dense_.solver.get(), dense_.matrix.get()));
+    require_made(ARKStepSetJacFn(ark, jacobian));
   }
   void start(double t) {
     Start const how = std::exchange(start_, Start::none);
@@ -191,42 +162,62 @@ class DirkStepper {
     if (how == Start::here) {
       ARKStepReset(ark, t, y_.get());
     } else {
-      add_counters(before_);
-      ARKStepReInit(ark, nullptr, field, t, y_.get());
+      counters().add_to(before_);
+      ARKStepReInit(ark, nullptr, field_, t, y_.get());
     }
     if (fixed_ > 0) ARKStepSetFixedStep(ark, fixed_);  // the last stop time shortened it
   }
-  void add_counters(Work& sum) const {
-    long steps = 0, failures = 0, iterations = 0, jacobians = 0;
-    ARKStepGetNumSteps(memory_.get(), &steps);
-    ARKStepGetNumErrTestFails(memory_.get(), &failures);
-    ARKStepGetNumNonlinSolvIters(memory_.get(), &iterations);
-    ARKStepGetNumJacEvals(memory_.get(), &jacobians);
-    sum.steps += steps;
-    sum.rejected += failures;
-    sum.iterations = sum.iterations.value_or(0) + iterations;
-    sum.jacobians = sum.jacobians.value_or(0) + jacobians;
-  }
-  static int field(double t, N_Vector y, N_Vector dydt, void* field) {
-    (*static_cast<LibraryField<P> const*>(field))(t, N_VGetArrayPointer(y), N_VGetArrayPointer(dydt));
-    return 0;
-  }
-  static int jacobian(double t, N_Vector y, N_Vector, SUNMatrix matrix, void* field, N_Vector, N_Vector,
-                      N_Vector) requires DifferentiableProblem<P> {
-    write_jacobian(*static_cast<LibraryField<P> const*>(field), t, N_VGetArrayPointer(y), SUNDenseMatrix_Data(matrix));
-    return 0;
+  SundialsCounters counters() const {
+    SundialsCounters now;
+    ARKStepGetNumSteps(memory_.get(), &now.steps);
+    ARKStepGetNumErrTestFails(memory_.get(), &now.failures);
+    ARKStepGetNumNonlinSolvIters(memory_.get(), &now.iterations.emplace());
+    ARKStepGetNumJacEvals(memory_.get(), &now.jacobians.emplace());
+    return now;
   }
 
-  static constexpr std::int64_t most_steps = 10'000'000;
-  std::unique_ptr<LibraryField<P>> field_;
-  SundialsOwned<SUNContext> context_ = make_sundials_context();
+  ARKRhsFn field_;
+  SundialsOwned<SUNContext> context_ = make_sundials_context();  // outlives all that is made in it
   SundialsOwned<N_Vector> y_;
-  SundialsOwned<SUNMatrix> matrix_;
-  SundialsOwned<SUNLinearSolver> linear_;
+  SundialsDense dense_;
   SundialsMemory<ARKStepFree> memory_;
-  double fixed_ = 0;
+  double fixed_ = 0;  ///< equal steps of [s]; 0: steps of ARKODE's choice
   Start start_ = Start::anew;
+  std::int64_t tried_ = 0;
   Work before_;
+};
+
+/// ARKODE from stop to stop.   Memory  ErkMemory or DirkMemory.   fails  with the status of its error code
+template <class Memory, Problem P>
+class ArkodeStepper {
+  using M = typename P::Space;
+
+ public:
+  /// kind: the order, or the table.
+  template <class Kind, class Control>
+  ArkodeStepper(Kind kind, P const& problem, Control control)
+      : user_(new SundialsUser<P>{LibraryField<P>(problem)}),
+        memory_(kind, control, sundials_field<P>, sundials_jacobian(problem), user_.get(), user_->field.size()) {}
+
+  /// x is read at a restart; between restarts ARKODE's own state goes on.
+  Status advance(Point<M>& x, double t, double t_end) { return go(x, t, t_end, false); }
+  Status step(Point<M>& x, double& t, double t_end) { return go(x, t, t_end, true); }
+  void restart() { memory_.restart(); }
+  void begin() requires requires(Memory& memory) { memory.begin(); }
+  { memory_.begin(); }
+  Work work() const { return memory_.work(); }
+  Projections projections() const { return {}; }
+
+ private:
+  Status go(Point<M>& x, double& t, double t_end, bool one_step) {
+    store(x, memory_.state());
+    Status const status = memory_.advance(t, t_end, one_step);
+    load(x, memory_.state());
+    return status == Status::ok && !all_finite(x) ? Status::diverged : status;
+  }
+
+  std::unique_ptr<SundialsUser<P>> user_;
+  Memory memory_;
 };
 #endif
 
@@ -252,15 +243,9 @@ struct ArkodeErk {
       .locates_events = false,  // ERKStep finds roots, too, but a new start costs its step control the step size
       .not_built = sundials_not_built};
 #ifdef POLHODE_HAS_SUNDIALS
-  template <Problem P>
-    requires FlatSpace<typename P::Space> && std::same_as<typename P::Space::Scalar, double>
-  auto bind(P const& p, Adaptive control, NormPolicy policy) const {
-    return ErkStepper<P>(order, p, control, policy);
-  }
-  template <Problem P>
-    requires FlatSpace<typename P::Space> && std::same_as<typename P::Space::Scalar, double>
-  auto bind(P const& p, FixedStep control, NormPolicy policy) const {
-    return ErkStepper<P>(order, p, control, policy);
+  template <LibraryProblem P, class Control>
+  auto bind(P const& p, Control control, NormPolicy) const {
+    return ArkodeStepper<ErkMemory, P>(order, p, control);
   }
 #endif
 };
@@ -280,15 +265,9 @@ struct ArkodeDirk {
       .not_built = sundials_not_built};
   static constexpr bool uses_jacobian = true;
 #ifdef POLHODE_HAS_SUNDIALS
-  template <Problem P>
-    requires FlatSpace<typename P::Space> && std::same_as<typename P::Space::Scalar, double>
-  auto bind(P const& p, Adaptive control, NormPolicy policy) const {
-    return DirkStepper<P>(ARKODE_ESDIRK547L2SA2_7_4_5, p, control, policy);
-  }
-  template <Problem P>
-    requires FlatSpace<typename P::Space> && std::same_as<typename P::Space::Scalar, double>
-  auto bind(P const& p, FixedStep control, NormPolicy policy) const {
-    return DirkStepper<P>(ARKODE_ESDIRK547L2SA2_7_4_5, p, control, policy);
+  template <LibraryProblem P, class Control>
+  auto bind(P const& p, Control control, NormPolicy) const {
+    return ArkodeStepper<DirkMemory, P>(ARKODE_ESDIRK547L2SA2_7_4_5, p, control);
   }
 #endif
 };

@@ -3,7 +3,6 @@
 /// re-initialises at the next call. double, flat coordinates; rtol, atol per component.
 /// Adams runs with fixed-point iteration, BDF with Newton and a dense Jacobian, the problem's own or difference
 /// quotients: CVODE's guide, ch. 4. Source: Hindmarsh et al. (2005), ACM TOMS 31, 363; SUNDIALS 6.4
-#include "integrators/rivals/jacobian.hpp"
 #include "integrators/rivals/sundials.hpp"
 
 #ifdef POLHODE_HAS_SUNDIALS
@@ -21,15 +20,16 @@ namespace polhode {
 /// Everything that does not know the problem: CVODE's objects and their lifetimes.
 class CvodeMemory {
  public:
-  /// multistep is CV_ADAMS or CV_BDF. Throws std::bad_alloc if the library cannot make its memory.
-  CvodeMemory(int multistep, Adaptive control, CVRhsFn field, void* user, int size)
+  /// multistep is CV_ADAMS or CV_BDF; the Jacobian is for Newton's iteration of BDF, null: difference quotients. Throws
+  /// std::bad_alloc if the library cannot make its memory.
+  CvodeMemory(int multistep, Adaptive control, CVRhsFn field, CVLsJacFn jacobian, void* user, int size)
       : y_(make_vector(size, context_)), memory_(CVodeCreate(multistep, context_.get())) {
     if (!memory_) throw std::bad_alloc();
     void* const cvode = memory_.get();
     require_made(CVodeInit(cvode, field, 0, y_.get()));
     require_made(CVodeSStolerances(cvode, control.rtol, control.atol));
     require_made(CVodeSetUserData(cvode, user));
-    require_made(CVodeSetMaxNumSteps(cvode, most_sundials_steps));
+    require_made(CVodeSetMaxNumSteps(cvode, most_trials));
     require_made(CVodeSetErrFile(cvode, nullptr));  // a failure is a status, not a message
     if (multistep == CV_ADAMS) {
       fixed_point_.reset(SUNNonlinSol_FixedPoint(y_.get(), 0, context_.get()));
@@ -37,6 +37,7 @@ class CvodeMemory {
     } else {
       dense_.make(y_, context_);
       require_made(CVodeSetLinearSolver(cvode, dense_.solver.get(), dense_.matrix.get()));
+      require_made(CVodeSetJacFn(cvode, jacobian));
     }
   }
 
@@ -51,15 +52,13 @@ class CvodeMemory {
 
   /// CVODE's own projection, for BDF: called after every step. Throws std::bad_alloc.
   void project_with(CVProjFn project) { require_made(CVodeSetProjFn(memory_.get(), project)); }
-  /// The Jacobian of Newton's iteration, for BDF. Throws std::bad_alloc.
-  void differentiate_with(CVLsJacFn jacobian) { require_made(CVodeSetJacFn(memory_.get(), jacobian)); }
   double* state() { return numbers_of(y_); }
   void restart() { fresh_ = true; }
 
   /// Goes on to t_end, or by one step of CVODE's choice; t moves.
   Status advance(double& t, double t_end, int task) {
     if (std::exchange(fresh_, false)) {
-      counters().add_to(before_, bool(dense_.solver));
+      counters().add_to(before_);
       CVodeReInit(memory_.get(), t, y_.get());
     }
     CVodeSetStopTime(memory_.get(), t_end);
@@ -86,7 +85,7 @@ class CvodeMemory {
   }
   Work work() const {
     Work sum = before_;
-    counters().add_to(sum, bool(dense_.solver));
+    counters().add_to(sum);
     return sum;
   }
 
@@ -95,8 +94,8 @@ class CvodeMemory {
     SundialsCounters now;
     CVodeGetNumSteps(memory_.get(), &now.steps);
     CVodeGetNumErrTestFails(memory_.get(), &now.failures);
-    CVodeGetNumNonlinSolvIters(memory_.get(), &now.iterations);
-    if (dense_.solver) CVodeGetNumJacEvals(memory_.get(), &now.jacobians);
+    CVodeGetNumNonlinSolvIters(memory_.get(), &now.iterations.emplace());
+    if (dense_.solver) CVodeGetNumJacEvals(memory_.get(), &now.jacobians.emplace());
     return now;
   }
 
@@ -117,11 +116,9 @@ class CvodeStepper {
 
  public:
   CvodeStepper(int multistep, P const& problem, Adaptive control, NormPolicy policy)
-      : user_(new User{LibraryField<P>(problem), {}}),
-        memory_(multistep, control, field, user_.get(), user_->field.size()) {
+      : user_(new SundialsUser<P>{LibraryField<P>(problem)}),
+        memory_(multistep, control, sundials_field<P>, sundials_jacobian(problem), user_.get(), user_->field.size()) {
     if (policy == NormPolicy::native) memory_.project_with(project);
-    if constexpr (DifferentiableProblem<P>)
-      if (multistep == CV_BDF && problem.has_jacobian()) memory_.differentiate_with(jacobian);
   }
 
   /// x is read at a restart; between restarts CVODE's own state and history go on.
@@ -138,35 +135,20 @@ class CvodeStepper {
   std::vector<int> const& roots() const requires SwitchingProblem<P> { return memory_.roots(); }
 
  private:
-  /// What CVODE hands back to our callbacks.
-  struct User {
-    LibraryField<P> field;
-    Projections projections;
-  };
-
   Status go(Point<M>& x, double& t, double t_end, int task) {
     store(x, memory_.state());
     Status const status = memory_.advance(t, t_end, task);
     load(x, memory_.state());
     return status == Status::ok && !all_finite(x) ? Status::diverged : status;
   }
-  static int field(double t, N_Vector y, N_Vector dydt, void* user) {
-    static_cast<User const*>(user)->field(t, N_VGetArrayPointer(y), N_VGetArrayPointer(dydt));
-    return 0;
-  }
-  static int jacobian(double t, N_Vector y, N_Vector, SUNMatrix matrix, void* user, N_Vector, N_Vector,
-                      N_Vector) requires DifferentiableProblem<P> {
-    write_jacobian(static_cast<User const*>(user)->field, t, N_VGetArrayPointer(y), SUNDenseMatrix_Data(matrix));
-    return 0;
-  }
   static int switching_functions(double t, N_Vector y, double* values, void* user) requires SwitchingProblem<P> {
-    static_cast<User const*>(user)->field.event_values(t, N_VGetArrayPointer(y), values);
+    static_cast<SundialsUser<P> const*>(user)->field.event_values(t, N_VGetArrayPointer(y), values);
     return 0;
   }
   /// correction = projected y - y. The error estimate is left as it is: projecting it, too, made the attitude error up
   /// to 14 times worse at equal tolerance.
   static int project(double, N_Vector y, N_Vector correction, double, N_Vector, void* user) {
-    User& u = *static_cast<User*>(user);
+    auto& u = *static_cast<SundialsUser<P>*>(user);
     N_VScale(1, y, correction);
     u.field.change(N_VGetArrayPointer(correction), [&](Point<M>& x) {
       double const defect = M::defect(x);
@@ -176,7 +158,7 @@ class CvodeStepper {
     return 0;
   }
 
-  std::unique_ptr<User> user_;
+  std::unique_ptr<SundialsUser<P>> user_;
   CvodeMemory memory_;
 };
 #endif
@@ -196,8 +178,7 @@ struct Cvode {
       .not_built = sundials_not_built};
   static constexpr bool uses_jacobian = stiff;
 #ifdef POLHODE_HAS_SUNDIALS
-  template <Problem P>
-    requires FlatSpace<typename P::Space> && std::same_as<typename P::Space::Scalar, double>
+  template <LibraryProblem P>
   auto bind(P const& p, Adaptive control, NormPolicy policy) const {
     return CvodeStepper<P>(stiff ? CV_BDF : CV_ADAMS, p, control, policy);
   }

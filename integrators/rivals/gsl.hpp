@@ -226,13 +226,11 @@ struct GslRk8pd {
                                    .source = "GSL 2.7, gsl_odeiv2_step_rk8pd; Prince & Dormand (1981)",
                                    .not_built = gsl_not_built};
 #ifdef POLHODE_HAS_GSL
-  template <Problem P>
-    requires FlatSpace<typename P::Space> && std::same_as<typename P::Space::Scalar, double>
+  template <LibraryProblem P>
   auto bind(P const& p, Adaptive control, NormPolicy policy) const {
     return GslAdaptive<P>(gsl_odeiv2_step_rk8pd, false, p, control, policy);
   }
-  template <Problem P>
-    requires FlatSpace<typename P::Space> && std::same_as<typename P::Space::Scalar, double>
+  template <LibraryProblem P>
   auto bind(P const& p, FixedStep control, NormPolicy policy) const {
     return GslFixed<P>(gsl_odeiv2_step_rk8pd, p, control, policy);
   }
@@ -252,8 +250,7 @@ struct GslMsadams {
       .locates_events = false,
       .not_built = gsl_not_built};
 #ifdef POLHODE_HAS_GSL
-  template <Problem P>
-    requires FlatSpace<typename P::Space> && std::same_as<typename P::Space::Scalar, double>
+  template <LibraryProblem P>
   auto bind(P const& p, Adaptive control, NormPolicy policy) const {
     return GslAdaptive<P>(gsl_odeiv2_step_msadams, true, p, control, policy);
   }

@@ -39,7 +39,7 @@ class IdaMemory {
     require_made(IDAInit(ida, residual, 0, y_.get(), rate_.get()));
     require_made(IDAWFtolerances(ida, weights));
     require_made(IDASetUserData(ida, user));
-    require_made(IDASetMaxNumSteps(ida, most_sundials_steps));
+    require_made(IDASetMaxNumSteps(ida, most_trials));
     require_made(IDASetId(ida, kinds.get()));
     require_made(IDASetSuppressAlg(ida, SUNTRUE));
     require_made(IDASetLinearSolver(ida, dense_.solver.get(), dense_.matrix.get()));
@@ -97,10 +97,10 @@ class IdaMemory {
     long residuals = 0;
     IDAGetNumSteps(memory_.get(), &now.steps);
     IDAGetNumErrTestFails(memory_.get(), &now.failures);
-    IDAGetNumNonlinSolvIters(memory_.get(), &now.iterations);
-    IDAGetNumJacEvals(memory_.get(), &now.jacobians);
+    IDAGetNumNonlinSolvIters(memory_.get(), &now.iterations.emplace());
+    IDAGetNumJacEvals(memory_.get(), &now.jacobians.emplace());
     IDAGetNumResEvals(memory_.get(), &residuals);
-    now.add_to(sum, true);
+    now.add_to(sum);
     sum.evaluations += residuals;
   }
 

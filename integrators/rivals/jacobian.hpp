@@ -11,7 +11,7 @@ namespace polhode {
 ///   has_jacobian()     false: this one does not, after all (its type was forgotten)
 ///   jacobian(t, x, J)  J[i + n j] = d rate_i / d x_j at (t, x): by columns, n numbers in a state
 template <class P>
-concept DifferentiableProblem = Problem<P> && FlatSpace<typename P::Space> &&
+concept DifferentiableProblem = LibraryProblem<P> &&
     requires(P const p, typename P::Space::Scalar t, Point<typename P::Space> const x, std::span<double> J) {
   { p.has_jacobian() } -> std::same_as<bool>;
   p.jacobian(t, x, J);

@@ -4,9 +4,12 @@
 
 namespace polhode {
 
+/// A problem that libraries can run: flat coordinates, in double.
+template <class P>
+concept LibraryProblem = Problem<P> && FlatSpace<typename P::Space> && std::same_as<typename P::Space::Scalar, double>;
+
 /// The field of p over arrays of doubles. Many bodies need room, which is made once; one body lives in registers.
-template <Problem P>
-  requires FlatSpace<typename P::Space> && std::same_as<typename P::Space::Scalar, double>
+template <LibraryProblem P>
 class LibraryField {
   using M = typename P::Space;
 

@@ -163,9 +163,6 @@ class OdeintControlled {
 
 namespace odeint_detail {
 namespace odeint = boost::numeric::odeint;
-template <class P>
-concept Suits = Problem<P> && FlatSpace<typename P::Space> && std::same_as<typename P::Space::Scalar, double>;
-
 template <Problem P>
 using State = typename OdeintSystem<P>::State;
 template <Problem P>
@@ -188,7 +185,7 @@ using BulirschStoer = odeint::bulirsch_stoer<State<P>>;
 /// What the entries below share: a stepper template, driven fixed.
 template <template <class> class Stepper>
 struct RunsFixedSteps {
-  template <Suits P>
+  template <LibraryProblem P>
   auto bind(P const& p, FixedStep control, NormPolicy policy) const {
     return OdeintFixed<Stepper<P>, P>(p, control, policy);
   }
@@ -197,7 +194,7 @@ struct RunsFixedSteps {
 template <template <class> class Pair>
 struct RunsBoth : RunsFixedSteps<Pair> {
   using RunsFixedSteps<Pair>::bind;
-  template <Suits P>
+  template <LibraryProblem P>
   auto bind(P const& p, Adaptive control, NormPolicy policy) const {
     return OdeintControlled<typename odeint::result_of::make_controlled<Pair<P>>::type, P>(p, control, policy);
   }
@@ -243,7 +240,7 @@ struct OdeintRkf78 : odeint_detail::RunsBoth<odeint_detail::Fehlberg78> {
 struct OdeintBulirschStoer {
   static constexpr MethodInfo info =
       odeint_detail::info("odeint_bulirsch_stoer", 0, "Boost.Odeint 1.74, bulirsch_stoer");
-  template <odeint_detail::Suits P>
+  template <LibraryProblem P>
   auto bind(P const& p, Adaptive control, NormPolicy policy) const {
     return OdeintControlled<odeint_detail::BulirschStoer<P>, P>(p, control, policy);
   }

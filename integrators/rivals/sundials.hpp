@@ -1,9 +1,9 @@
 #pragma once
-/// What the adapters to SUNDIALS share: its objects with owners, dense linear algebra, counters, and why a binary may
-/// lack it.
+/// What the adapters to SUNDIALS share: its objects with owners, dense linear algebra, callbacks, counters, and why a
+/// binary may lack it.
 #include <string_view>
 
-#include "integrators/integrator.hpp"
+#include "integrators/rivals/jacobian.hpp"
 
 #ifdef POLHODE_HAS_SUNDIALS
 #include <nvector/nvector_serial.h>
@@ -81,19 +81,45 @@ struct SundialsDense {
   }
 };
 
-/// The counters of a multistep solver start anew at each re-initialisation; we keep the sum.
-struct SundialsCounters {
-  long steps = 0, failures = 0, iterations = 0, jacobians = 0;
+/// What CVODE and ARKODE hand back to our callbacks.
+template <Problem P>
+struct SundialsUser {
+  LibraryField<P> field;
+  Projections projections{};  ///< those that the library asked for
+};
+/// Their right-hand side: dydt = f(t, y).
+template <Problem P>
+int sundials_field(double t, N_Vector y, N_Vector dydt, void* user) {
+  static_cast<SundialsUser<P> const*>(user)->field(t, N_VGetArrayPointer(y), N_VGetArrayPointer(dydt));
+  return 0;
+}
+/// Their Jacobian, dense: the problem's own. Null where it has none: they then take difference quotients.
+using SundialsJacobian = int (*)(double t, N_Vector y, N_Vector dydt, SUNMatrix, void* user, N_Vector, N_Vector,
+                                 N_Vector);
+template <Problem P>
+SundialsJacobian sundials_jacobian([[maybe_unused]] P const& problem) {
+  if constexpr (DifferentiableProblem<P>)
+    if (problem.has_jacobian())
+      return [](double t, N_Vector y, N_Vector, SUNMatrix matrix, void* user, N_Vector, N_Vector, N_Vector) {
+        auto const& field = static_cast<SundialsUser<P> const*>(user)->field;
+        write_jacobian(field, t, N_VGetArrayPointer(y), SUNDenseMatrix_Data(matrix));
+        return 0;
+      };
+  return nullptr;
+}
 
-  void add_to(Work& sum, bool has_jacobian) const {
+/// The counters of a solver start anew at each re-initialisation; we keep the sum. Null: the solver has none.
+struct SundialsCounters {
+  long steps = 0, failures = 0;
+  std::optional<long> iterations{}, jacobians{};
+
+  void add_to(Work& sum) const {
     sum.steps += steps;
     sum.rejected += failures;
-    sum.iterations = sum.iterations.value_or(0) + iterations;
-    if (has_jacobian) sum.jacobians = sum.jacobians.value_or(0) + jacobians;
+    if (iterations) sum.iterations = sum.iterations.value_or(0) + *iterations;
+    if (jacobians) sum.jacobians = sum.jacobians.value_or(0) + *jacobians;
   }
 };
-
-inline constexpr long most_sundials_steps = 10'000'000;
 #else
 inline constexpr std::string_view sundials_not_built = "not built: configure with POLHODE_SUNDIALS=ON";
 #endif
