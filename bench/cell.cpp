@@ -116,7 +116,7 @@ std::string_view policy_refusal(MethodInfo const& info, NormPolicy policy, bool 
   if (policy == NormPolicy::native) return info.projects_natively ? "" : "has no projection of its own";
   if (policy == NormPolicy::project_multiplier && !quaternion_body<M>)
     return "the multiplier form of the projection is that of one body's quaternion";
-  if (policy == NormPolicy::project || policy == NormPolicy::project_multiplier) return info.no_projection;
+  if (is_projection(policy)) return info.no_projection;
   return own_policy_refusal<M>(info, policy, adaptive);
 }
 

@@ -180,8 +180,7 @@ class EqualSteps {
   R h_;
   R slack_ = R(1e-9) * abs_of(h_);  ///< a span that is nearer to h is one step
   /// What is done after every step within run_steps.
-  NormPolicy at_border_ =
-      policy_ == NormPolicy::project || policy_ == NormPolicy::project_multiplier ? policy_ : NormPolicy::none;
+  NormPolicy at_border_ = is_projection(policy_) ? policy_ : NormPolicy::none;
   Workspace<M, typename Method::template Frame<M>> frame_;
   typename Method::template Memory<M> memory_{};
   std::int64_t steps_ = 0;

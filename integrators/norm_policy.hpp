@@ -27,6 +27,11 @@ enum class NormPolicy {
   native,      ///< the library's own projection
 };
 
+/// A policy that moves the state to the nearest point of the constraint, after a step that knows nothing of it.
+constexpr bool is_projection(NormPolicy policy) {
+  return policy == NormPolicy::project || policy == NormPolicy::project_multiplier;
+}
+
 /// The policies by their words.
 struct PolicyName {
   NormPolicy policy;
