@@ -1,17 +1,25 @@
 #pragma once
-/// The verbs of the command line that need the harness: list, run, simulate, reference.
+/// The verbs of the command line, each in a file of its own: commands_VERB.cpp. The report's is in main.cpp.
 #include <CLI/App.hpp>
 #include <filesystem>
 #include <functional>
 #include <string>
 
-#include "bench/provenance.hpp"
-#include "bench/run.hpp"
-#include "bench/vocabulary.hpp"
 #include "results/compare.hpp"
 #include "results/terminal.hpp"
 
 namespace polhode::bench {
+
+/// What the program returns: a contract, which README.md and --help state, too.
+enum ExitCode {
+  exit_ok = 0,
+  exit_expectation_failed = 1,
+  exit_usage = 2,
+  exit_nothing_selected = 3,
+  exit_run_failed = 4,
+  exit_bad_file = 5,
+  exit_interrupted = 130
+};
 
 /// Draws rows (t first, units beside the names) into a file; throws if it cannot.
 using PlotTrajectory =
@@ -36,6 +44,8 @@ void add_list(CLI::App& app);
 void add_run(CLI::App& app, int& code);
 /// The verb simulate: one cell.
 void add_simulate(CLI::App& app, int& code, PlotTrajectory const& plot);
+/// The verb reference: certified references, made.
+void add_reference(CLI::App& app);
 /// The verb ensemble: many samples of one problem.
 void add_ensemble(CLI::App& app, int& code);
 /// The verb compare: two sets of records.

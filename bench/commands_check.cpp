@@ -17,6 +17,8 @@
 #include "bench/check.hpp"
 #include "bench/check_report.hpp"
 #include "bench/commands.hpp"
+#include "bench/data.hpp"
+#include "bench/provenance.hpp"
 #include "results/file_name.hpp"
 #include "results/store.hpp"
 
@@ -62,18 +64,22 @@ void tell_github(CheckSubject const& subject, std::vector<Row> const& rows) {
   if (!out) throw results::StoreError(fmt::format("{}: cannot be written: {}", summary, std::strerror(errno)));
 }
 
+/// What the meta says under a key; empty if nothing.
+std::string entry(results::Meta const& meta, char const* key) {
+  auto const found = meta.find(key);
+  return found == meta.end() ? "" : found->second;
+}
+
 /// When and from which commit, as far as the meta tells.
 std::string made_text(results::Meta const& meta) {
   std::vector<std::string> parts;
   auto const note = [&](char const* key, char const* label) {
-    auto const found = meta.find(key);
-    if (found != meta.end()) parts.push_back(label + found->second);
+    if (std::string const value = entry(meta, key); !value.empty()) parts.push_back(label + value);
   };
   note("utc", "");
   note("version", "version ");
   note("git_commit", "commit ");
-  auto const dirty = meta.find("git_dirty");
-  if (dirty != meta.end() && dirty->second == "true") parts.push_back("modified");
+  if (entry(meta, "git_dirty") == "true") parts.push_back("modified");
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
@@ -86,9 +92,9 @@ Checked open_folder(std::string const& folder) {
   auto const& metas = checked.contents.metas;
   if (metas.empty()) throw NothingSelected(fmt::format("{}: holds no records; `polhode run` makes them", folder));
   results::Meta const& newest = metas.back();
-  auto const build = newest.find("build");
   checked.subject.suite = checked.suite.name;
-  checked.subject.build = build == newest.end() ? "" : build->second;
+  checked.subject.build = entry(newest, "build");
+  checked.subject.source = entry(newest, "suite_file");
   checked.subject.made = made_text(newest);
   checked.cells = pair_up(checked.suite, checked.contents, checked.subject.build);
   checked.subject.cells = checked.cells.size();
@@ -153,7 +159,6 @@ void require_something(Checked const& checked, std::vector<Row> const& rows) {
 }
 
 int check(CheckOptions const& options) {
-  constexpr int expectation_failed = 1;
   Checked const checked = open_folder(options.folder);
   GoldenByCell golden;
   for (GoldenLine& line : results::read_golden(golden_file(options, checked.suite.name))) {
@@ -167,7 +172,7 @@ int check(CheckOptions const& options) {
   if (!options.markdown.empty()) write_file(options.markdown, markdown_text(checked.subject, rows));
   tell_github(checked.subject, rows);
   bool const good = std::ranges::all_of(rows, [](Row const& row) { return is_good(row.verdict); });
-  return good ? 0 : expectation_failed;
+  return good ? 0 : exit_expectation_failed;
 }
 
 }  // namespace

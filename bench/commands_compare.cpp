@@ -14,6 +14,7 @@
 
 #include "bench/cell_flags.hpp"
 #include "bench/commands.hpp"
+#include "bench/messages.hpp"
 #include "results/compare.hpp"
 #include "results/store.hpp"
 
@@ -84,7 +85,6 @@ results::Contents read_records(std::string const& path) {
 }
 
 int compare(CompareOptions const& options, WriteComparison const& write) {
-  constexpr int regressed = 1;
   check_options(options);
   results::Comparison const comparison =
       results::compare(read_records(options.a), read_records(options.b), options.a, options.b, options.rules);
@@ -103,7 +103,7 @@ int compare(CompareOptions const& options, WriteComparison const& write) {
         text_of(comparison, options.format.empty() ? usual : options.format, write, results::outlet_of(STDOUT_FILENO));
     std::fwrite(text.data(), 1, text.size(), stdout);
   }
-  return options.fail && comparison.regressed() ? regressed : 0;
+  return options.fail && comparison.regressed() ? exit_expectation_failed : exit_ok;
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <cerrno>
 #include <chrono>
 #include <cmath>
-#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -20,14 +19,12 @@
 #include "bench/ensemble_output.hpp"
 #include "bench/progress.hpp"
 #include "bench/ranks.hpp"
-#include "bench/run.hpp"
+#include "bench/signals.hpp"
 #include "results/store.hpp"
 #include "results/whole_file.hpp"
 
 namespace polhode::bench {
 namespace {
-
-std::atomic<bool> stopped = false;
 
 struct EnsembleFlags {
   CellFlags cell;
@@ -88,7 +85,7 @@ results::EnsembleStatistics gather(EnsembleJob const& job, EnsembleTiming& timin
       job.items(),
       [&](std::int64_t item) {  // one at a time
         double const begin = cpu_seconds();
-        std::string bytes = job.work(item, timing.threads, stopped);
+        std::string bytes = job.work(item, timing.threads, interrupted);
         timing.cpu_seconds += cpu_seconds() - begin;
         timing.samples_here += job.samples_in(item);
         return bytes;
@@ -99,7 +96,7 @@ results::EnsembleStatistics gather(EnsembleJob const& job, EnsembleTiming& timin
         rows << part.rows;
         progress.advance();
       },
-      &stopped);
+      &interrupted);
   if (rows.is_open() && !rows.flush())
     throw results::StoreError(fmt::format("{}: cannot be written: {}", raw, std::strerror(errno)));
   return all.statistics;
@@ -107,7 +104,6 @@ results::EnsembleStatistics gather(EnsembleJob const& job, EnsembleTiming& timin
 
 /// Returns the exit code.
 int run_ensemble_verb(EnsembleFlags const& flags) {
-  constexpr int interrupted = 130, run_failed = 4;
   Ranks ranks = Ranks::of_this_job();
   std::unique_ptr<EnsembleJob> job;
   EnsembleTiming timing{.ranks = ranks.size()};
@@ -120,10 +116,10 @@ int run_ensemble_verb(EnsembleFlags const& flags) {
 
   auto const begin = std::chrono::steady_clock::now();
   results::EnsembleStatistics const statistics = gather(*job, timing, flags.raw, ranks);
-  if (!ranks.manager()) return 0;
-  if (stopped) {
+  if (!ranks.manager()) return exit_ok;
+  if (interrupted) {
     std::fputs("polhode: interrupted; nothing was written but rows of --raw\n", stderr);
-    return interrupted;
+    return exit_interrupted;
   }
   timing.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   timing.kernel_rate = plain_kernel_rate(timing.threads);
@@ -136,7 +132,7 @@ int run_ensemble_verb(EnsembleFlags const& flags) {
   std::fwrite(text.data(), 1, text.size(), stdout);
   bool const any = statistics.endings().contains("ok") || statistics.endings().contains("never_settled");
   if (!any) std::fputs("polhode: no sample reached its end\n", stderr);
-  return any ? 0 : run_failed;
+  return any ? exit_ok : exit_run_failed;
 }
 
 }  // namespace
@@ -168,10 +164,7 @@ void add_ensemble(CLI::App& app, int& code) {
   add_number(*verb, "--worst", flags->worst, "Samples to list of each metric")->type_name("INT")->capture_default_str();
   verb->add_flag("--json", flags->json, "ensemble.json on standard output instead of the table");
   verb->callback([=, &code] {
-    auto const stop = [](int) { stopped = true; };
-    std::signal(SIGINT, stop);
-    std::signal(SIGTERM, stop);
-    std::signal(SIGXFSZ, SIG_IGN);
+    interruptible();
     code = run_ensemble_verb(*flags);
   });
 }

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "bench/commands.hpp"
+#include "bench/messages.hpp"
 #include "results/export.hpp"
 #include "results/merge.hpp"
 #include "results/store.hpp"

@@ -8,6 +8,7 @@
 
 #include "bench/cell_flags.hpp"
 #include "bench/commands.hpp"
+#include "bench/data.hpp"
 #include "bench/import.hpp"
 #include "bench/patience.hpp"
 

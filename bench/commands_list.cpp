@@ -8,6 +8,7 @@
 #include "bench/catalogue.hpp"
 #include "bench/cell.hpp"
 #include "bench/commands.hpp"
+#include "bench/data.hpp"
 
 namespace polhode::bench {
 namespace {

@@ -11,9 +11,12 @@
 #include "bench/cell.hpp"
 #include "bench/cell_flags.hpp"
 #include "bench/commands.hpp"
+#include "bench/data.hpp"
+#include "bench/provenance.hpp"
 #include "bench/ranks.hpp"
 #include "bench/run.hpp"
 #include "bench/run_report.hpp"
+#include "bench/signals.hpp"
 #include "bench/slurm.hpp"
 #include "results/store.hpp"
 
@@ -122,12 +125,11 @@ int run_on_ranks(std::string const& name, RunOptions const& options, bool traffi
     suite = read_suite(file, vocabulary());
   });
   RunSummary const summary = run_in_file(file, suite, options, ranks);
-  if (options.dry_run || !ranks.manager()) return 0;
+  if (options.dry_run || !ranks.manager()) return exit_ok;
   say(summary);
   if (traffic) say(ranks.size(), ranks.traffic());
-  constexpr int interrupted = 130, run_failed = 4;
-  if (summary.interrupted) return interrupted;
-  return summary.died > 0 ? run_failed : 0;
+  if (summary.interrupted) return exit_interrupted;
+  return summary.died > 0 ? exit_run_failed : exit_ok;
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "bench/cell_flags.hpp"
 #include "bench/commands.hpp"
 #include "bench/ensemble_job.hpp"
+#include "bench/provenance.hpp"
 #include "results/store.hpp"
 
 namespace polhode::bench {
@@ -111,7 +112,6 @@ struct SampleFlags {
 
 int run_simulation(results::Cell const& cell, double every, std::string const& out, std::string const& picture,
                    PlotTrajectory const& plot) {
-  constexpr int run_failed = 4;
   PreparedCell prepared = prepare(cell);
   if (!(every > 0)) {
     double const period = prepared.problem->sample_period();
@@ -133,11 +133,11 @@ int run_simulation(results::Cell const& cell, double every, std::string const& o
   bool const failed = trajectory.status != results::Status::ok;
   if (!picture.empty() && !(failed && trajectory.history.rows.size() < 2))
     plot(series_of(trajectory), title_of(prepared.cell), picture);
-  if (!failed) return 0;
+  if (!failed) return exit_ok;
   std::fputs(fmt::format("polhode: {} on {}: {}\n", prepared.cell.integrator, prepared.cell.problem, trajectory.reason)
                  .c_str(),
              stderr);
-  return run_failed;
+  return exit_run_failed;
 }
 
 }  // namespace

@@ -6,9 +6,9 @@
 
 #include "bench/cell.hpp"
 #include "bench/channel.hpp"
+#include "bench/data.hpp"
 #include "bench/doctor.hpp"
 #include "bench/provenance.hpp"
-#include "bench/run.hpp"
 #include "integrators/ensemble.hpp"
 
 namespace polhode::bench {

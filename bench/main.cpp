@@ -12,6 +12,8 @@
 #include <system_error>
 
 #include "bench/commands.hpp"
+#include "bench/messages.hpp"
+#include "bench/provenance.hpp"
 #include "bench/ranks.hpp"
 #include "report/comparison.hpp"
 #include "report/report.hpp"
@@ -22,16 +24,6 @@
 namespace {
 
 using namespace polhode;
-
-// A contract; see README.md.
-enum Exit {
-  exit_ok = 0,
-  exit_usage = 2,
-  exit_nothing_selected = 3,
-  exit_run_failed = 4,
-  exit_bad_file = 5,
-  exit_interrupted = 130
-};
 
 int complain(int code, std::string const& what) {
   std::fputs(("polhode: " + what + "\n").c_str(), stderr);
@@ -126,11 +118,11 @@ std::string explain(CLI::ParseError const& error, CLI::App const& app) {
 
 /// Of what is wrong with the command line, which all ranks of an MPI job have.
 int complain_once(std::string const& what) {
-  return bench::speaks_for_the_job() ? complain(exit_usage, what) : exit_ok;
+  return bench::speaks_for_the_job() ? complain(bench::exit_usage, what) : bench::exit_ok;
 }
 
 int complain_of_output(std::error_code const& reason) {
-  return complain(exit_bad_file, "standard output: cannot be written: " + reason.message());
+  return complain(bench::exit_bad_file, "standard output: cannot be written: " + reason.message());
 }
 
 /// The exit code, once everything is out: a full disk must not pass for success.
@@ -149,7 +141,7 @@ int main(int argc, char** argv) {
   app.footer(
       "Exit codes: 0 ok, 1 an expectation failed, 2 usage, 3 nothing selected, 4 a run failed, 5 a bad file, "
       "130 interrupted.");
-  int code = exit_ok;
+  int code = bench::exit_ok;
   bench::add_commands(app, code, {report::plot_trajectory, comparison_in});
   add_report(app);
   try {
@@ -158,18 +150,18 @@ int main(int argc, char** argv) {
   } catch (CLI::Success const& success) {  // --help, --version
     return finish(app.exit(success));
   } catch (bench::EndedElsewhere const&) {
-    return exit_ok;
+    return bench::exit_ok;
   } catch (CLI::ParseError const& error) {
     return complain_once(explain(error, app));
   } catch (bench::UsageError const& error) {
     return complain_once(error.what());
   } catch (bench::NothingSelected const& error) {
-    return complain(exit_nothing_selected, error.what());
+    return complain(bench::exit_nothing_selected, error.what());
   } catch (std::bad_alloc const&) {
-    return complain(exit_run_failed, "out of memory");
+    return complain(bench::exit_run_failed, "out of memory");
   } catch (std::system_error const& error) {
-    return std::ferror(stdout) != 0 ? complain_of_output(error.code()) : complain(exit_bad_file, error.what());
+    return std::ferror(stdout) != 0 ? complain_of_output(error.code()) : complain(bench::exit_bad_file, error.what());
   } catch (std::exception const& error) {  // files: suites, records, references, reports
-    return complain(exit_bad_file, error.what());
+    return complain(bench::exit_bad_file, error.what());
   }
 }

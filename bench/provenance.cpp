@@ -9,7 +9,6 @@
 
 #include <Eigen/Core>
 #include <boost/version.hpp>
-#include <cstdlib>
 #include <ctime>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -59,18 +58,6 @@ std::string libraries() {
   list += fmt::format(", gsl {}", GSL_VERSION);
 #endif
   return list;
-}
-
-std::filesystem::path executable() {
-  return std::filesystem::read_symlink("/proc/self/exe");
-}
-
-std::filesystem::path data_folder(char const* inside_share, char const* inside_source) {
-  if (char const* chosen = std::getenv("POLHODE_DATA")) return std::filesystem::path(chosen) / inside_share;
-  auto const installed = executable().parent_path().parent_path() / "share" / "polhode" / inside_share;
-  if (std::filesystem::is_directory(installed)) return installed;
-  if (!additions().data.empty()) return std::filesystem::path(additions().data) / inside_share;
-  return std::filesystem::path(build_info::source_folder) / inside_source;
 }
 
 /// "integrators heun; problems damped_body": what this binary adds to Polhode's catalogues. Empty if nothing.
@@ -137,13 +124,6 @@ results::Meta provenance() {
     note("kernel", fmt::format("{} {} {}", system.sysname, system.release, system.machine));
   }
   return meta;
-}
-
-std::filesystem::path suites_folder() {
-  return data_folder("suites", "bench/suites");
-}
-std::filesystem::path references_folder() {
-  return data_folder("reference", "results/reference");
 }
 
 }  // namespace polhode::bench

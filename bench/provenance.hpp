@@ -1,6 +1,5 @@
 #pragma once
 /// Where a number comes from: binary, compiler, libraries, machine. Goes into the meta record of every file.
-#include <filesystem>
 #include <string>
 
 #include "results/record.hpp"
@@ -15,9 +14,5 @@ std::string version_text();
 std::string const& build_id();
 /// Everything known about this process and machine; what the machine does not tell is absent.
 results::Meta provenance();
-/// The folder of suites and references: $POLHODE_DATA, else share/polhode beside the installed binary, else that of the
-/// Polhode that a binary with additions was built against, else the source tree.
-std::filesystem::path suites_folder();
-std::filesystem::path references_folder();
 
 }  // namespace polhode::bench

@@ -4,10 +4,8 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <chrono>
-#include <csignal>
 #include <cstring>
 #include <fstream>
 #include <map>
@@ -18,17 +16,17 @@
 #include <thread>
 
 #include "bench/catalogue.hpp"
+#include "bench/data.hpp"
 #include "bench/group.hpp"
 #include "bench/progress.hpp"
 #include "bench/provenance.hpp"
+#include "bench/signals.hpp"
 #include "results/file_name.hpp"
 #include "results/folder_lock.hpp"
 #include "results/store.hpp"
 
 namespace polhode::bench {
 namespace {
-
-std::atomic<bool> interrupted = false;
 
 /// Since 1970: files of records sort by it, as text, too.
 std::int64_t nanoseconds_now() {
@@ -91,6 +89,21 @@ std::set<std::string> finished(std::filesystem::path const& out, bool retry_fail
     if (record.build == build_id() && (good || !retry_failed)) done.insert(record.cell);
   }
   return done;
+}
+
+/// Where a file stands in the repository in which the run is started, or, without one, below the folder where it is; empty
+/// for one outside. There a CI server marks what `check` finds.
+std::string path_in_repository(std::filesystem::path const& file) {
+  std::error_code none;
+  std::filesystem::path const here = std::filesystem::current_path(none);
+  auto const is_top = [&](std::filesystem::path const& folder) {
+    return std::filesystem::exists(folder / ".git", none);
+  };
+  std::filesystem::path top = here;
+  while (!is_top(top) && top.has_relative_path()) top = top.parent_path();
+  std::filesystem::path const path = std::filesystem::relative(file, is_top(top) ? top : here, none);
+  bool const inside = !file.empty() && !path.empty() && *path.begin() != "..";
+  return inside ? path.generic_string() : "";
 }
 
 /// A rough guess [s]: what a measured step, a reference and a timed cell take on a machine of today.
@@ -200,7 +213,7 @@ class SuiteRun {
       lock.emplace(out);
     else
       lock.emplace(out, options_.shard, options_.shards);
-    if (options_.fresh) forget(out);
+    if (options_.fresh) results::remove_records(out);
     std::set<std::string> const done = finished(out, options_.retry_failed);
     std::string left;
     for (Task const& task : tasks_) left += done.contains(task.id) ? '0' : '1';
@@ -210,11 +223,6 @@ class SuiteRun {
       copy_files_of_suite();
     }
     return fmt::format("{:020} {}", nanoseconds_now(), left);
-  }
-  static void forget(std::filesystem::path const& out) {
-    for (auto const& entry : std::filesystem::directory_iterator(out))
-      if (entry.path().extension() == ".jsonl") std::filesystem::remove(entry.path());
-    std::filesystem::remove(out / results::catalogue_file);
   }
   void copy_files_of_suite() const {
     for (std::filesystem::path const& file : suite_.files) {
@@ -280,6 +288,7 @@ class SuiteRun {
     results::Meta meta = provenance();
     meta["suite"] = suite_.name;
     meta["suite_hash"] = results::hash_of(suite_.text);
+    if (std::string const file = path_in_repository(suite_.file); !file.empty()) meta["suite_file"] = file;
     meta["reference_methods"] = "Taylor series and 8-stage Gauss, float128";
     if (ranks_.alone()) return meta;
     meta["rank"] = std::to_string(ranks_.rank());
@@ -313,34 +322,6 @@ class SuiteRun {
 };
 
 }  // namespace
-
-void warn(std::string const& warning) {
-  if (!warning.empty()) std::fputs(fmt::format("polhode: warning: {}\n", warning).c_str(), stderr);
-}
-
-void interruptible() {
-  auto const note = [](int) { interrupted = true; };
-  std::signal(SIGINT, note);
-  std::signal(SIGTERM, note);
-  std::signal(SIGXFSZ, SIG_IGN);  // a limit on the size of files is an error of the write, with a name
-}
-
-std::vector<std::string> suite_names() {
-  std::vector<std::string> names;
-  if (!std::filesystem::is_directory(suites_folder())) return names;
-  for (auto const& entry : std::filesystem::directory_iterator(suites_folder()))
-    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem());
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-std::filesystem::path suite_file(std::string const& name_or_file) {
-  std::filesystem::path const built_in = suites_folder() / (name_or_file + ".toml");
-  bool const is_name = name_or_file.find_first_of("./") == std::string::npos;
-  if (is_name && std::filesystem::exists(built_in)) return built_in;
-  if (!is_name || std::filesystem::exists(name_or_file)) return name_or_file;
-  throw UsageError(unknown("suite", name_or_file, suite_names()));
-}
 
 std::filesystem::path default_folder(Suite const& suite) {
   return std::filesystem::path("polhode-results") / results::file_name_of(suite.name);

@@ -30,11 +30,6 @@ struct RunSummary {
   bool interrupted = false;
 };
 
-/// The names of the built-in suites, sorted.
-std::vector<std::string> suite_names();
-/// The suite of that name among the built-in ones, or that file.
-std::filesystem::path suite_file(std::string const& name_or_file);
-
 /// Where a run of the suite goes if it is not told: polhode-results/SUITE.
 std::filesystem::path default_folder(Suite const& suite);
 /// How many cells of the suite --filter selects. Throws what run_suite does for mistakes in them.
@@ -44,10 +39,5 @@ std::size_t count_cells(Suite const& suite, std::string const& filter);
 /// ranks take no times. Throws SuiteError, UsageError (bad filter), NothingSelected, results::StoreError,
 /// ReferenceError; see Ranks.
 RunSummary run_suite(Suite const& suite, RunOptions const& options, Ranks& ranks);
-
-/// Tells the user on stderr; nothing if there is nothing to tell.
-void warn(std::string const& warning);
-/// From now on SIGINT and SIGTERM end a run between cells.
-void interruptible();
 
 }  // namespace polhode::bench

@@ -3,23 +3,14 @@
 /// from the two catalogues; the command line, the suite reader and `polhode list` speak through it.
 #include <map>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "bench/messages.hpp"
 #include "results/record.hpp"
 
 namespace polhode::bench {
-
-/// The user's mistake, in words: what, where, and what would be right. main() turns it into one line and an exit code.
-struct UsageError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-/// A valid selection that matches no cell. Exit code 3.
-struct NothingSelected : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 struct ParameterWord {
   std::string name, unit;
@@ -55,16 +46,6 @@ struct Vocabulary {
   ProblemWord const& problem(std::string_view name) const;
   IntegratorWord const& integrator(std::string_view name) const;
 };
-
-/// The word of `known` that is nearest to `word` by Damerau-Levenshtein distance, or "" when none is near: a third of
-/// the word may be wrong, and two letters always may.
-std::string nearest(std::string_view word, std::vector<std::string> const& known);
-/// "unknown KIND 'word'; did you mean 'nearest'?", or with the list of all when none is near. `where` ("of free_body",
-/// "in [[sweep]]") follows the word.
-std::string unknown(std::string_view kind, std::string_view word, std::vector<std::string> const& known,
-                    std::string_view where = "");
-/// A user's word in quotes, safe inside a one-line message: control characters replaced, very long words cut.
-std::string quote(std::string_view word);
 
 /// Brings a variant selection ("g2,case1") into canonical form: one word per group in the order of the groups, defaults
 /// written out, groups whose choice is "" left out. Throws UsageError for unknown words and for two of one group.
