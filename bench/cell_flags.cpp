@@ -6,7 +6,8 @@
 #include <charconv>
 
 #include "bench/suite.hpp"
-#include "problems/graph.hpp"
+#include "bench/suite_graphs.hpp"
+#include "problems/parameters.hpp"
 
 namespace polhode::bench {
 namespace {
@@ -49,7 +50,7 @@ std::pair<std::string, std::vector<double>> parse_setting(std::string const& tex
   bool const numbers = value.find_first_not_of("0123456789+-.,eE ") == std::string::npos;
   if (name == "graph" && !numbers) {
     try {
-      return {name, read_graph(value)};
+      return {name, read_graph_file(value)};
     } catch (ParameterError const& error) {
       throw SuiteError(error.what());
     }

@@ -8,6 +8,7 @@
 
 #include "results/record.hpp"
 #include "results/shallow.hpp"
+#include "results/whole_file.hpp"
 
 namespace polhode::bench {
 namespace {
@@ -85,9 +86,7 @@ Certificate load(std::filesystem::path const& file) {
     return ReferenceError(fmt::format("{}: {}; make it anew with `polhode reference`", file.string(), why));
   };
   try {
-    std::ifstream in(file);
-    if (!in) throw refuse("cannot be read");
-    auto json = Json::parse(in, results::shallow);
+    auto json = Json::parse(results::read_whole(file), results::shallow);
     std::string const hash = json.at("hash");
     json.erase("hash");
     if (results::hash_of(json.dump()) != hash)
@@ -113,6 +112,8 @@ Certificate load(std::filesystem::path const& file) {
     }
     if (c.states.empty()) throw refuse("it has no states");
     return c;
+  } catch (results::StoreError const& error) {
+    throw ReferenceError(error.what());
   } catch (nlohmann::json::exception const& error) {
     throw refuse(error.what());
   } catch (std::invalid_argument const& error) {

@@ -183,9 +183,10 @@ std::string markdown_text(CheckSubject const& subject, std::vector<Row> const& r
 std::string github_text(CheckSubject const& subject, std::vector<Row> const& rows) {
   constexpr std::size_t most = 10;
   std::vector<std::string> lines;
+  std::string const& file = subject.source.empty() ? subject.file : subject.source;
   for (Row const& row : rows) {
     if (is_good(row.verdict)) continue;
-    std::string const place = fmt::format("file={},line={},title={}", github(subject.file, true), row.line,
+    std::string const place = fmt::format("file={},line={},title={}", github(file, true), row.line,
                                           github("polhode check: " + row.field, true));
     for (std::string const& failure : row.failures)
       lines.push_back(fmt::format("::error {}::{}\n", place, github(failure, false)));

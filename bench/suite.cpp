@@ -288,6 +288,7 @@ Timing read_timing(Toml const& root) {
 Suite read_suite(std::filesystem::path const& file, Vocabulary const& vocabulary) {
   Suite suite;
   suite.text = read_text(file);
+  suite.file = file;
   auto const root = parse(suite.text, file.string());
   table(root, "the suite", {"name", "timing", "sweep", "exclude", "expect"});
   auto const& name = need(root, "the suite", "name", "name = \"mine\"");

@@ -54,7 +54,8 @@ struct Expectation {
 
 struct Suite {
   std::string name;
-  std::string text;  ///< the file as read: copied into the result folder, hashed into the provenance
+  std::string text;              ///< the file as read: copied into the result folder, hashed into the provenance
+  std::filesystem::path file{};  ///< that it was read from
   std::vector<std::filesystem::path> files{};  ///< that it was read with: graphs; copied, too
   Timing timing;
   std::vector<SuiteCell> cells;  ///< in file order, without duplicates

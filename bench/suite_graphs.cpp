@@ -12,6 +12,15 @@ namespace polhode::bench {
 
 namespace fs = std::filesystem;
 
+std::vector<double> read_graph_file(fs::path const& file) {
+  try {
+    std::ifstream in = results::open_regular(file, results::most_text);
+    return read_graph(in, file.string());
+  } catch (results::StoreError const& error) {
+    throw ParameterError(fmt::format("parameter graph: {}", error.what()));
+  }
+}
+
 std::vector<double> GraphFiles::read(fs::path const& written) {
   std::error_code none;
   std::string const name = written.filename().string(), plain = results::file_name_of(name);
@@ -31,7 +40,7 @@ std::vector<double> GraphFiles::read(fs::path const& written) {
     throw ParameterError(
         fmt::format("parameter graph: {} and {} have one name, but are copied to one folder; rename one",
                     same_name->string(), file.string()));
-  return read_graph(file.string());
+  return read_graph_file(file);
 }
 
 }  // namespace polhode::bench

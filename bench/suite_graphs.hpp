@@ -1,12 +1,15 @@
 #pragma once
-/// The graph files that a suite names.
+/// Graphs in files, and those that a suite names.
 #include <filesystem>
 #include <vector>
 
 namespace polhode::bench {
 
-/// Reads them, once each or often, and remembers which: `run` copies them into the result folder, beside the suite. So
-/// every one needs a name of its own there.
+/// The links in a file, three numbers each. Throws ParameterError: what is wrong, with file and line.
+std::vector<double> read_graph_file(std::filesystem::path const& file);
+
+/// Reads those of a suite, once each or often, and remembers which: `run` copies them into the result folder, beside
+/// the suite. So every one needs a name of its own there.
 class GraphFiles {
  public:
   /// folder: that of the suite.

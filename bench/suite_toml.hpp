@@ -4,13 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cfloat>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -20,6 +16,7 @@
 #include <vector>
 
 #include "bench/suite.hpp"
+#include "results/whole_file.hpp"
 
 namespace polhode::bench::suite_toml {
 
@@ -48,21 +45,12 @@ auto located(Toml const& at, Action&& action) {
 // --- From the file to a TOML value -----------------------------------------------------------------------------------
 
 inline std::string read_text(std::filesystem::path const& file) {
-  constexpr std::size_t max_bytes = std::size_t{16} << 20;
-  auto const refuse = [&](std::string_view why) { throw SuiteError(fmt::format("{}: {}", file.string(), why)); };
-  std::error_code ignored;
-  auto const status = std::filesystem::status(file, ignored);
-  if (std::filesystem::is_directory(status)) refuse("is a directory; give a suite file");
-  bool const endless = std::filesystem::is_character_file(status);
-  if (endless) refuse("is a device; give a suite file");
-  bool const huge = std::filesystem::is_regular_file(status) && std::filesystem::file_size(file, ignored) > max_bytes;
-  if (huge) refuse("is larger than 16 MiB; split the suite");
-  errno = 0;
-  std::ifstream in(file, std::ios::binary);
-  if (!in) refuse(fmt::format("cannot be read: {}", std::strerror(errno)));
-  std::string text(std::istreambuf_iterator<char>(in), {});
-  if (in.bad()) refuse("cannot be read to its end");
-  return text;
+  constexpr std::uintmax_t most_bytes = 16 << 20;
+  try {
+    return results::read_whole(file, most_bytes);
+  } catch (results::StoreError const& error) {
+    throw SuiteError(error.what());
+  }
 }
 
 /// Brackets and dots beyond this depth: no suite needs them, and the parser's recursion would overflow the stack.

@@ -4,16 +4,15 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <fstream>
 #include <limits>
 #include <numeric>
 #include <optional>
 
 #include "bench/vocabulary.hpp"
+#include "results/whole_file.hpp"
 
 namespace polhode::bench {
 namespace {
@@ -234,10 +233,12 @@ TrajectoryTable read_trajectory(std::istream& in, std::string const& name, Colum
 }
 
 TrajectoryTable read_trajectory(std::filesystem::path const& file, ColumnNames const& wanted) {
-  if (std::filesystem::is_directory(file)) throw TrajectoryError(file.string() + ": is a directory; give a CSV file");
-  errno = 0;
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw TrajectoryError(fmt::format("{}: cannot be read: {}", file.string(), std::strerror(errno)));
+  std::ifstream in;
+  try {
+    in = results::open_regular(file);
+  } catch (results::StoreError const& error) {
+    throw TrajectoryError(error.what());
+  }
   return read_trajectory(in, file.string(), wanted);
 }
 

@@ -4,14 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
-#include <system_error>
 
-#include "results/store.hpp"
+#include "results/shallow.hpp"
 #include "results/whole_file.hpp"
 
 namespace polhode::results {
@@ -77,7 +74,7 @@ Benchmark const* Benchmarks::find(std::string_view name) const {
 }
 
 Benchmarks benchmarks_from(std::string const& text) {
-  Json const json = Json::parse(text, nullptr, false);
+  Json const json = Json::parse(text, shallow, false);
   if (json.is_discarded()) throw std::invalid_argument("is not JSON; must be what `polhode-bench --out DIR` writes");
   expect_members(json, kind, {"schema", "kind", "meta", kind});
   if (json["schema"] != schema) complain("schema", fmt::format("must be {}", schema));
@@ -95,16 +92,7 @@ Benchmarks benchmarks_from(std::string const& text) {
 }
 
 Benchmarks read_benchmarks(fs::path const& folder) {
-  fs::path const file = folder / benchmarks_file;
-  if (!fs::exists(file)) return {};
-  std::ifstream in(file, std::ios::binary);
-  std::string const text(std::istreambuf_iterator<char>(in), {});
-  if (!in) throw StoreError(fmt::format("{}: cannot be read", file.string()));
-  try {
-    return benchmarks_from(text);
-  } catch (std::invalid_argument const& error) {
-    throw StoreError(fmt::format("{}: {}", file.string(), error.what()));
-  }
+  return read_if_there(folder / benchmarks_file, benchmarks_from).value_or(Benchmarks());
 }
 
 void write_benchmarks(fs::path const& folder, Benchmarks const& benchmarks) {

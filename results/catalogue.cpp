@@ -3,14 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
-#include <system_error>
 
 #include "results/shallow.hpp"
-#include "results/store.hpp"
 #include "results/whole_file.hpp"
 
 namespace polhode::results {
@@ -48,26 +44,6 @@ IntegratorFacts facts_of(Json const& json) {
   return facts;
 }
 
-/// The file's text; nothing if the folder has none.
-std::optional<std::string> text_of(fs::path const& folder) {
-  fs::path const file = folder / catalogue_file;
-  if (!fs::exists(file)) return {};
-  std::ifstream in(file, std::ios::binary);
-  std::string text(std::istreambuf_iterator<char>(in), {});
-  if (!in) throw StoreError(fmt::format("{}: cannot be read", file.string()));
-  return text;
-}
-
-/// What `read` gives; what it says of the text names the folder's file.
-template <class Read>
-auto in_file(fs::path const& folder, Read read) {
-  try {
-    return read();
-  } catch (std::invalid_argument const& error) {
-    throw StoreError(fmt::format("{}: {}", (folder / catalogue_file).string(), error.what()));
-  }
-}
-
 }  // namespace
 
 Catalogue catalogue_from(std::string const& text) {
@@ -84,8 +60,7 @@ Catalogue catalogue_from(std::string const& text) {
 }
 
 Catalogue read_catalogue(fs::path const& folder) {
-  auto const text = text_of(folder);
-  return text ? in_file(folder, [&] { return catalogue_from(*text); }) : Catalogue();
+  return read_if_there(folder / catalogue_file, catalogue_from).value_or(Catalogue());
 }
 
 void write_catalogue(fs::path const& folder, std::string const& text) {
@@ -95,10 +70,9 @@ void write_catalogue(fs::path const& folder, std::string const& text) {
 std::optional<std::string> merged_catalogues(std::vector<fs::path> const& folders) {
   Json merged = Json::array();
   for (fs::path const& folder : folders) {
-    auto const text = text_of(folder);
-    if (!text) continue;
-    Json const list = in_file(folder, [&] { return list_of(*text); });
-    for (Json const& entry : list) {
+    auto const list = read_if_there(folder / catalogue_file, list_of);
+    if (!list) continue;
+    for (Json const& entry : *list) {
       auto const known = std::ranges::find_if(merged, [&](Json const& one) { return one["name"] == entry["name"]; });
       if (known == merged.end()) {
         merged.push_back(entry);

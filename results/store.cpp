@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdint>
 #include <fstream>
@@ -34,22 +35,33 @@ struct Lines {
   std::string torn;
 };
 
+/// The next line, without its newline; false for what stands after the last one. std::getline, but of a file that is no
+/// text it takes a part into memory, and false.
+bool next_line(std::istream& in, std::string& line, std::size_t longest) {
+  line.clear();
+  for (std::array<char, 1 << 12> part; line.size() <= longest; in.clear()) {
+    in.getline(part.data(), part.size());
+    auto const taken = std::size_t(in.gcount());
+    line.append(part.data(), in.good() ? taken - 1 : taken);  // good: the newline is taken, and counted
+    bool const goes_on = in.rdstate() == std::ios::failbit;
+    if (!goes_on) return in.good();
+  }
+  return false;
+}
+
 /// Calls visit(line, number) for every complete line of a file.
 Lines for_each_line(fs::path const& file, std::function<void(std::string const&, std::size_t)> const& visit) {
-  errno = 0;
-  std::ifstream in(file, std::ios::binary);
-  if (!in) io_error(file, "open");
+  constexpr std::size_t longest = std::size_t{256} << 20;
+  std::ifstream in = open_regular(file);
   Lines lines;
-  std::string line;
-  for (std::size_t number = 1; std::getline(in, line); ++number) {
-    if (in.eof()) {
-      lines.torn = line;
-      break;
-    }
-    lines.complete += line.size() + 1;
-    visit(line, number);
+  std::size_t number = 1;
+  for (; next_line(in, lines.torn, longest); ++number) {
+    lines.complete += lines.torn.size() + 1;
+    visit(lines.torn, number);
   }
   if (in.bad()) io_error(file, "read");
+  if (lines.torn.size() > longest)
+    throw StoreError(fmt::format("{}:{}: longer than {} MiB: no record", file.string(), number, longest >> 20));
   return lines;
 }
 
@@ -216,6 +228,12 @@ Contents read(fs::path const& path) {
   contents.benchmarks = read_benchmarks(path);
   contents.ensemble = read_ensemble(path);
   return contents;
+}
+
+void remove_records(fs::path const& folder) {
+  auto const files = files_of(folder);
+  for (fs::path const& file : files) complete_bytes(file);
+  for (fs::path const& file : files) fs::remove(file);
 }
 
 bool is_own_name(std::string_view name) {

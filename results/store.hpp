@@ -10,7 +10,6 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,13 +18,9 @@
 #include "results/catalogue.hpp"
 #include "results/ensemble_file.hpp"
 #include "results/record.hpp"
+#include "results/whole_file.hpp"
 
 namespace polhode::results {
-
-/// A file that cannot be read or written, or is damaged; what() names file, line and what is wrong.
-struct StoreError : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
 
 /// Everything that a folder (or one file) holds. A cell that was run more than once by a build keeps its last run.
 struct Contents {
@@ -42,6 +37,10 @@ struct Contents {
 /// Reads every *.jsonl in `path` (a folder), in the order of their names, and its catalogue; or `path` itself (a file).
 /// Throws StoreError.
 Contents read(std::filesystem::path const& path);
+
+/// Removes the record files of a folder, damaged ones too. Throws StoreError, and removes nothing, if a *.jsonl there
+/// does not begin as ours do: it is somebody else's.
+void remove_records(std::filesystem::path const& folder);
 
 /// A name that files of a result folder have: nothing else may be put there under it.
 bool is_own_name(std::string_view name);

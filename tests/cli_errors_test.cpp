@@ -255,8 +255,8 @@ TEST(CliFiles, Suites) {
       {
           {"run missing.toml", 5, "missing.toml: cannot be read: No such file or directory"},
           {"run ./missing", 5, "./missing: cannot be read: No such file or directory"},
-          {"run folder", 5, "folder: is a directory; give a suite file"},
-          {"run /dev/zero", 5, "/dev/zero: is a device; give a suite file"},
+          {"run folder", 5, "folder: is a directory; give a file"},
+          {"run /dev/zero", 5, "/dev/zero: is a device; give a file"},
           {"run toml.toml", 5, "toml.toml:2: not valid TOML: missing value after key-value separator '='"},
           {"run key.toml", 5, "key.toml:6: unknown key 'hh' in [[sweep]]; did you mean 'h'?"},
           {"run type.toml", 5, "type.toml:6: h: number expected, string found"},

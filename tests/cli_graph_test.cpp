@@ -37,7 +37,7 @@ TEST(CliGraph, AMissingFileIsAMistakeInAFile) {
   Folder folder;
   Result const result = polhode(folder, "simulate quaternion_sync --integrator rk4 --h 0.1 --set graph=missing.txt");
   EXPECT_EQ(result.code, 5);
-  EXPECT_EQ(result.err, "polhode: parameter graph: cannot read missing.txt\n");
+  EXPECT_EQ(result.err, "polhode: parameter graph: missing.txt: cannot be read: No such file or directory\n");
 }
 
 // Ends of a path coupled to a pair: balanced, but driven apart.

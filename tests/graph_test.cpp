@@ -3,10 +3,9 @@
 #include "problems/graph.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
 #include <set>
+#include <sstream>
 
 #include "problems/controllers/consensus.hpp"
 #include "problems/controllers/synchronisation.hpp"
@@ -98,28 +97,21 @@ TEST(Graph, TheParameterTakesThreeNumbersALink) {
 
 // ---- Files ----------------------------------------------------------------------------------------------------------
 
-/// A file that is gone at the end of the scope.
-struct File {
-  std::string path;
-  explicit File(std::string const& text)
-      : path(
-            (std::filesystem::temp_directory_path() / ("graph_test_" + std::to_string(::getpid()) + ".txt")).string()) {
-    std::ofstream(path) << text;
-  }
-  ~File() { std::filesystem::remove(path); }
-};
+std::vector<double> read(std::string const& text) {
+  std::istringstream in(text);
+  return read_graph(in, "swarm.txt");
+}
 /// What read_graph has against a text, without the file's name.
 std::string file_complaint(std::string const& text) {
-  File const file(text);
-  std::string const what = complaint([&] { read_graph(file.path); });
-  std::string const prefix = "parameter graph: " + file.path;
+  std::string const what = complaint([&] { read(text); });
+  std::string const prefix = "parameter graph: swarm.txt";
   EXPECT_TRUE(what.empty() || what.starts_with(prefix)) << what;
   return what.empty() ? "" : what.substr(prefix.size());
 }
 
 TEST(GraphFile, LinesAndComments) {
-  File const file("# two craft\n\n1 2 1.5   # hears\n\t2\t1  1e-3\r\n   # end");
-  EXPECT_EQ(read_graph(file.path), (std::vector<double>{1, 2, 1.5, 2, 1, 1e-3}));
+  EXPECT_EQ(read("# two craft\n\n1 2 1.5   # hears\n\t2\t1  1e-3\r\n   # end"),
+            (std::vector<double>{1, 2, 1.5, 2, 1, 1e-3}));
 }
 
 TEST(GraphFile, ComplaintsHaveFileAndLine) {
@@ -135,7 +127,6 @@ TEST(GraphFile, ComplaintsHaveFileAndLine) {
   EXPECT_EQ(file_complaint("0 2 1\n"), ":1: nodes are whole numbers from 1, not 0");
   EXPECT_EQ(file_complaint("1 2.5 1\n"), ":1: nodes are whole numbers from 1, not 2.5");
   EXPECT_EQ(file_complaint("# nothing\n"), " has no links");
-  EXPECT_EQ(complaint([] { read_graph("/nonexistent/graph"); }), "parameter graph: cannot read /nonexistent/graph");
 }
 
 // ---- Rules ----------------------------------------------------------------------------------------------------------

@@ -234,8 +234,8 @@ TEST(BadSuite, NoSuchFile) {
     return "";
   };
   EXPECT_EQ(message_of(missing), missing.string() + ": cannot be read: No such file or directory");
-  EXPECT_EQ(message_of(folder), folder.string() + ": is a directory; give a suite file");
-  EXPECT_EQ(message_of("/dev/zero"), "/dev/zero: is a device; give a suite file");
+  EXPECT_EQ(message_of(folder), folder.string() + ": is a directory; give a file");
+  EXPECT_EQ(message_of("/dev/zero"), "/dev/zero: is a device; give a file");
 }
 
 }  // namespace
