@@ -217,8 +217,7 @@ Table norm_table(Facts const& facts) {
                           {"without projection", true},
                           {"with projection", true},
                           {"runs without", true},
-                          {"kept without"}},
-              .rows = {}};
+                          {"kept without"}}};
   for (bool const flat : {true, false}) {
     auto const methods = keeping_of(facts, flat);
     std::vector<std::pair<std::string, Keeping>> sorted(methods.begin(), methods.end());

@@ -61,8 +61,7 @@ void add_remarks(Document& document, Facts const& facts) {
   if (remarks.empty()) return;
   Table table{.name = "remarks",
               .caption = "Runs that ended well, and what should be known about them.",
-              .columns = {{"problem"}, {"remark"}, {"runs", true}},
-              .rows = {}};
+              .columns = {{"problem"}, {"remark"}, {"runs", true}}};
   for (auto const& [key, n] : remarks) table.rows.push_back({key.first, key.second, std::to_string(n)});
   document.add(std::move(table));
 }
@@ -89,8 +88,7 @@ void add_failures(Document& document, Facts const& facts) {
       .caption = fmt::format("{} that did not end well, by status and reason. A failure counts as infinite in every "
                              "ranking above. Refusals of a problem for one reason share a row.",
                              counted(n, "run", "runs")),
-      .columns = {{"status"}, {"reason"}, {"problem"}, {"method"}, {"runs", true}, {"control"}},
-      .rows = {}};
+      .columns = {{"status"}, {"reason"}, {"problem"}, {"method"}, {"runs", true}, {"control"}}};
   for (auto const& [key, group] : groups) {
     auto const& [status, reason, name, label, method] = key;
     bool const alike = group.problems.size() == 1 && group.methods.size() == 1;
@@ -134,8 +132,7 @@ void add_references(Document& document, Facts const& facts) {
               .caption =
                   "What attitude errors were measured against. The bar bounds the reference's own error; a smaller "
                   "measured error says no more than that.",
-              .columns = {{"reference"}, {"problem"}, {"bar [rad]", true}, {"[arcsec]", true}, {"runs", true}},
-              .rows = {}};
+              .columns = {{"reference"}, {"problem"}, {"bar [rad]", true}, {"[arcsec]", true}, {"runs", true}}};
   for (auto const& [key, use] : uses) {
     auto const& [name, bar] = key;
     std::vector<std::string> const problems(use.first.begin(), use.first.end());
@@ -174,8 +171,7 @@ void add_provenance(Document& document, Facts const& facts) {
   }
   Table table{.name = "provenance",
               .caption = "Where and how the records were made.",
-              .columns = {{"what"}, {"value"}, {"files", true}},
-              .rows = {}};
+              .columns = {{"what"}, {"value"}, {"files", true}}};
   for (auto const& [item, n] : values) table.rows.push_back({item.first, item.second, std::to_string(n)});
   if (table.rows.empty()) {
     document.say("The records say nothing about where and how they were made.");

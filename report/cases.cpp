@@ -124,7 +124,7 @@ Curve against_time(Facts const& facts, Record const& run, std::string_view colum
   results::Series const* series = facts.series_of(run, "history");
   auto const t = series ? column_of(*series, "t") : std::nullopt;
   auto const value = series ? column_of(*series, column) : std::nullopt;
-  if (!t || !value) return {std::move(label), style, {}};
+  if (!t || !value) return {std::move(label), style};
   auto const y = [&](std::vector<double> const& row) {
     double const v = view.factor * row[*value];
     bool const inside = view.from <= row[*t] && row[*t] <= view.to;

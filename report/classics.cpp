@@ -64,8 +64,7 @@ void add_external(Document& document, Facts const& facts) {
                           {"nearest run"},
                           {"difference", true},
                           {"digits agreed", true},
-                          {"met", true}},
-              .rows = {}};
+                          {"met", true}}};
   std::set<std::string> sources;
   for (External const& e : externals) {
     std::map<std::pair<std::string, bool>, Attempts> all;
@@ -135,8 +134,7 @@ void add_methods(Document& document, Facts const& facts) {
                           {"rival"},
                           {"control"},
                           {"cost", true},
-                          {"rival over ours", true}},
-              .rows = {}};
+                          {"rival over ours", true}}};
   std::map<std::string, std::vector<std::string>> winners;
   for (Instance const& instance : facts.instances) {
     if (!is_classic(instance.like()) || !instance.comparable()) continue;
@@ -190,8 +188,7 @@ void add_order_matrix(Document& document, Facts const& facts) {
                                      "rate error of krogh_b5); ~ marks a slope through two points, {} that the errors "
                                      "are round-off, or do not lie on a line.",
                                      absent),
-              .columns = {{"integrator"}, {"formulation"}},
-              .rows = {}};
+              .columns = {{"integrator"}, {"formulation"}}};
   for (std::string const& name : problems) table.columns.push_back({name, true});
   for (auto const& [key, orders] : rows) {
     std::vector<Entry> row{std::get<1>(key), std::get<2>(key)};
@@ -251,9 +248,7 @@ void add_gravity_gradient(Document& document, Facts const& facts) {
                                    error_panel(facts, "S^3 (s3)", of("s3"), jacobi),
                                    error_panel(facts, "R^4 (quaternion)", of("quaternion")),
                                    error_panel(facts, "S^3 (s3)", of("s3"))},
-                        .columns = 2,
-                        .svg = {},
-                        .why_not = ""});
+                        .columns = 2});
 }
 
 }  // namespace
@@ -264,9 +259,8 @@ void add_classics(Document& document, Facts const& facts) {
   document.section("Classics");
   document.say(
       "Problems that every integrator of rigid bodies has met: a heavy top (fast spin, or slow in a potential), "
-      "Krogh's "
-      "three rates, a satellite under the gravity gradient, and slews under proportional-derivative control beside a "
-      "wheel (gyrostat), with a late torque (delayed) and with a torque in steps (quantized).");
+      "Krogh's three rates, a satellite under the gravity gradient, and slews under proportional-derivative control "
+      "beside a wheel (gyrostat), with a late torque (delayed) and with a torque in steps (quantized).");
   add_external(document, facts);
   add_methods(document, facts);
   add_order_matrix(document, facts);

@@ -15,11 +15,7 @@ using results::Comparison;
 using results::Trend;
 
 Table table_of(std::string name, Text caption, std::vector<Column> columns) {
-  return {.name = std::move(name),
-          .caption = std::move(caption),
-          .columns = std::move(columns),
-          .rows = {},
-          .has_file = false};
+  return {.name = std::move(name), .caption = std::move(caption), .columns = std::move(columns), .has_file = false};
 }
 
 /// Adds a table, or a part of it and how much is left.
@@ -170,7 +166,7 @@ void add_alone(Document& document, Comparison const& comparison, std::size_t mos
 }  // namespace
 
 Document document_of(Comparison const& comparison, std::size_t most_rows) {
-  Document document{.title = "Polhode: comparison", .blocks = {}};
+  Document document{.title = "Polhode: comparison"};
   add_sets(document, comparison);
   add_statuses(document, comparison, most_rows);
   add_claims(document, comparison, most_rows);

@@ -36,14 +36,11 @@ void add_rates(Document& document, Facts const& facts, Runs const& runs) {
   constexpr std::array colours{3, 12, 2};
   Figure figure{.name = "consensus-rates",
                 .caption = "Mean body rate of each group against time: bodies 1 to 3 solid, bodies 4 and 5 dashed.",
-                .panels = {},
-                .columns = 2,
-                .svg = {},
-                .why_not = ""};
+                .columns = 2};
   for (auto const start : group_consensus().cases) {
     Record const* run = runs.plain.find(start);
     if (!run) continue;
-    Panel panel{.x = {"t [s]"}, .y = {"mean rate [rad/s]"}, .curves = {}, .title = std::string(start)};
+    Panel panel{.x = {"t [s]"}, .y = {"mean rate [rad/s]"}, .title = std::string(start)};
     for (int group = 1; group <= 2; ++group) {
       for (std::size_t k = 0; k < axes.size(); ++k) {
         add_curve(panel,
@@ -62,14 +59,11 @@ void add_decay(Document& document, Facts const& facts, Runs const& runs) {
                 .caption =
                     "Largest difference of rates within a group, and V, against time: as published, and with "
                     "the shadow point of sigma wherever a body has turned through 180 deg.",
-                .panels = {},
-                .columns = 2,
-                .svg = {},
-                .why_not = ""};
+                .columns = 2};
   for (auto const start : group_consensus().cases) {
     for (auto const& [column, label] :
          {std::pair("spread", "spread of rates [rad/s]"), std::pair("lyapunov", "V [J]")}) {
-      Panel panel{.x = {"t [s]"}, .y = {label, true, 1e-6}, .curves = {}, .title = std::string(start)};
+      Panel panel{.x = {"t [s]"}, .y = {label, true, 1e-6}, .title = std::string(start)};
       if (Record const* run = runs.plain.find(start))
         add_curve(panel, against_time(facts, *run, column, "as published", {.index = 3, .points = false}));
       if (Record const* run = runs.shadow.find(start))
@@ -138,9 +132,8 @@ void add_escape(Document& document, Facts const& facts) {
       .caption =
           "The counterexample to theorem 2: all sigma 0 and all rates equal. \"Escape\" is when |sigma| is "
           "largest.",
-      .columns =
-          {{"formulation"}, {"integrator"}, {"control"}, {"status"}, {"steps", true}, {"escape [s]", true}, {"reason"}},
-      .rows = {}};
+      .columns = {
+          {"formulation"}, {"integrator"}, {"control"}, {"status"}, {"steps", true}, {"escape [s]", true}, {"reason"}}};
   std::set<std::string> ended, went_on;
   std::optional<double> at;
   for (Record const* run : facts.runs) {

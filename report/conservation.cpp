@@ -68,9 +68,9 @@ std::vector<History> histories_of(Facts const& facts) {
 using Values = std::vector<double> History::*;
 
 Panel panel_of(Facts const& facts, std::vector<History> const& histories, Values values, std::string label) {
-  Panel panel{.x = {"t [s]"}, .y = {std::move(label), true, floor_of_figure}, .curves = {}};
+  Panel panel{.x = {"t [s]"}, .y = {std::move(label), true, floor_of_figure}};
   for (History const& history : histories) {
-    Curve curve{method_of(history.run->of), facts.style_of(history.run->of), {}};
+    Curve curve{method_of(history.run->of), facts.style_of(history.run->of)};
     for (std::size_t i = 0; i < history.t.size(); ++i) {
       curve.points.push_back({history.t[i], std::max((history.*values)[i], floor_of_figure)});
     }
@@ -100,8 +100,7 @@ void add_conservation(Document& document, Facts const& facts) {
   document.heading(3, "Energy and angular momentum against time");
   document.say(
       "What theory says of a free body: Gauss methods on (q, omega) keep the quadratic energy and |L|, and L wanders "
-      "in "
-      "space by O(h^2s), s being the stages. In canonical variables the same methods are symplectic: L is kept in "
+      "in space by O(h^2s), s being the stages. In canonical variables the same methods are symplectic: L is kept in "
       "space, and the error of the energy oscillates without growth, at O(h^2s). The discrete Moser-Veselov algorithm, "
       "preprocessed or not, keeps both (Hairer & Vilmart 2006); it errs in the phase. An error that is bounded is as "
       "large in the first half of the time as in the second.");
@@ -112,9 +111,7 @@ void add_conservation(Document& document, Facts const& facts) {
                 .panels = {panel_of(facts, histories, &History::energy, "|H/H0 - 1|"),
                            panel_of(facts, histories, &History::momentum, "|L - L0|/|L0| in space")},
                 .columns = 2,
-                .same_y = true,
-                .svg = {},
-                .why_not = ""};
+                .same_y = true};
   document.add(std::move(figure));
   Table table{.name = "conservation",
               .caption = fmt::format("{}: the largest values in the first half of the time and in the second.", where),
@@ -123,8 +120,7 @@ void add_conservation(Document& document, Facts const& facts) {
                           {"energy, first half", true},
                           {"second half", true},
                           {"L in space, first half", true},
-                          {"second half", true}},
-              .rows = {}};
+                          {"second half", true}}};
   for (History const& history : histories) {
     std::vector<Entry> row{history.run->of.integrator, history.run->of.formulation};
     for (Values const values : {&History::energy, &History::momentum}) {

@@ -177,8 +177,7 @@ Table defect_table(std::vector<Sweep> const& sweeps) {
                           {"control"},
                           {"status"},
                           {"evaluations", true},
-                          {"attitude error [rad]", true}},
-              .rows = {}};
+                          {"attitude error [rad]", true}}};
   for (ErrorKind const& kind : kinds) {
     if (kind.label != attitude_at_end.label) table.columns.push_back({std::string(kind.label), true});
   }
@@ -210,8 +209,7 @@ void add_order_table(Document& document, Facts const& facts) {
                           {"Phi", true},
                           {"dPhi/dt", true},
                           {"d2Phi/dt2", true},
-                          {"lambda", true}},
-              .rows = {}};
+                          {"lambda", true}}};
   auto sweeps = fixed_sweeps(facts, is_constrained);
   std::ranges::stable_sort(sweeps, {}, [](Sweep const& s) { return !sees_constraint(s.like().integrator); });
   for (Sweep const& sweep : sweeps) {
@@ -230,11 +228,10 @@ void add_order_table(Document& document, Facts const& facts) {
 Panel work_panel(Facts const& facts, std::vector<Sweep> const& sweeps, ErrorKind const& kind) {
   Panel panel{.x = {"evaluations", true},
               .y = {std::string(kind.label), true, 1e-16 * kind.scale},
-              .curves = {},
               .rounding = 1e-13 * kind.scale};
   for (Sweep const& sweep : sweeps) {
     Cell const& c = sweep.like();
-    Curve curve{c.integrator + (c.h ? "" : ", adaptive"), facts.style_of(c), {}};
+    Curve curve{c.integrator + (c.h ? "" : ", adaptive"), facts.style_of(c)};
     for (Record const* run : sweep.runs) {
       auto const error = finite(kind.of(*run));
       bool const grey = error && kind.has_bar && *error <= finite(run->reference_bar).value_or(0);
@@ -252,10 +249,7 @@ void add_figures(Document& document, Facts const& facts, std::vector<Sweep> cons
                       .caption =
                           "Defects of the constraint, error of its multiplier, and attitude error against the "
                           "step. The shade is where rounding rules.",
-                      .panels = {},
-                      .columns = 2,
-                      .svg = {},
-                      .why_not = ""};
+                      .columns = 2};
   for (ErrorKind const& kind : {position, velocity, acceleration, multiplier, attitude_at_end})
     against_step.panels.push_back(error_panel(facts, "", steps, kind));
   add_figure(document, std::move(against_step));
@@ -263,16 +257,12 @@ void add_figures(Document& document, Facts const& facts, std::vector<Sweep> cons
                         .caption = "The same against the evaluations of the field, with the adaptive methods. Open "
                                    "symbols: rivals; dashed: adaptive.",
                         .panels = {work_panel(facts, sweeps, position), work_panel(facts, sweeps, attitude_at_end)},
-                        .columns = 2,
-                        .svg = {},
-                        .why_not = ""});
+                        .columns = 2});
   Figure drift{.name = "constrained-drift",
                .caption = "Violation of the constraint against time, of the runs that left a history.",
-               .panels = {{.x = {"t [s]"}, .y = {std::string(position.label), true, 1e-17}, .curves = {}},
-                          {.x = {"t [s]"}, .y = {std::string(velocity.label), true, 1e-15}, .curves = {}}},
-               .columns = 2,
-               .svg = {},
-               .why_not = ""};
+               .panels = {{.x = {"t [s]"}, .y = {std::string(position.label), true, 1e-17}},
+                          {.x = {"t [s]"}, .y = {std::string(velocity.label), true, 1e-15}}},
+               .columns = 2};
   for (Sweep const& sweep : sweeps) {
     for (Record const* run : sweep.runs) {
       Style style = facts.style_of(run->of);

@@ -50,7 +50,7 @@ class Histories {
 
   /// A column against time, scaled to the unit of the label.
   Panel against_time(std::string_view column, std::string label, double factor) const {
-    Panel panel{.x = {"t [s]"}, .y = {std::move(label)}, .curves = {}};
+    Panel panel{.x = {"t [s]"}, .y = {std::move(label)}};
     for (Shown const& s : shown_) {
       auto const t = column_of(*s.series, "t"), value = column_of(*s.series, column);
       if (!t || !value) continue;
@@ -65,10 +65,8 @@ class Histories {
   /// The capture point in orbital axes, C = A(q)^T d = R(q) d, seen along an axis.
   Panel track(std::size_t across, std::size_t up) const {
     static constexpr std::array names{"x", "y", "z"};
-    Panel panel{.x = {fmt::format("{} [m]", names[across])},
-                .y = {fmt::format("{} [m]", names[up])},
-                .curves = {},
-                .equal_scale = true};
+    Panel panel{
+        .x = {fmt::format("{} [m]", names[across])}, .y = {fmt::format("{} [m]", names[up])}, .equal_scale = true};
     for (Shown const& s : shown_) {
       std::array<std::size_t, 4> q{};
       bool complete = true;
@@ -103,9 +101,7 @@ class Histories {
     document.add(Figure{.name = fmt::format("control-{}-{}", n_, what),
                         .caption = caption,
                         .panels = std::move(panels),
-                        .columns = columns,
-                        .svg = {},
-                        .why_not = ""});
+                        .columns = columns});
   }
 
  private:

@@ -122,8 +122,7 @@ void add_winners(Document& document, Facts const& facts) {
                           {"cost", true},
                           {"low", true, true},
                           {"high", true, true},
-                          {"factor", true}},
-              .rows = {}};
+                          {"factor", true}}};
   for (Instance const& instance : facts.instances) {
     if (!instance.comparable() || is_aside(instance.like())) continue;
     Measure const measure = measure_of(instance);

@@ -63,8 +63,7 @@ void add_bounds(Document& document, std::vector<Record const*> const& runs) {
                           {"v_x [N m]", true},
                           {"v_y", true},
                           {"v_z", true},
-                          {"events located", true}},
-              .rows = {}};
+                          {"events located", true}}};
   std::size_t judged = 0, rest = 0, layer = 0;
   double worst = 0;
   for (Record const* run : runs) {
@@ -111,22 +110,16 @@ void add_histories(Document& document, Facts const& facts, std::vector<Record co
                    .caption = fmt::format("Commands around t_f = {} s, for the nominal inertia: on the cubic path they "
                                           "jump, on the quintic they do not.",
                                           significant(t_f)),
-                   .panels = {},
-                   .columns = 2,
-                   .svg = {},
-                   .why_not = ""};
+                   .columns = 2};
     Figure rest{.name = fmt::format("dead-zone-rest-{:.0f}", t_f),
                 .caption = fmt::format("Around and after t_f = {} s: attitude, and the sliding variable whose layer is "
                                        "beta wide.",
                                        significant(t_f)),
-                .panels = {},
-                .columns = 2,
-                .svg = {},
-                .why_not = ""};
+                .columns = 2};
     for (auto const* axis : axes) {
-      Panel v{.x = {"t [s]"}, .y = {fmt::format("v_{} [N m]", axis)}, .curves = {}};
-      Panel sigma{.x = {"t [s]"}, .y = {fmt::format("|sigma_{}|", axis), true, 1e-12}, .curves = {}};
-      Panel sliding{.x = {"t [s]"}, .y = {fmt::format("|s_{}| [1/s]", axis), true, 1e-12}, .curves = {}};
+      Panel v{.x = {"t [s]"}, .y = {fmt::format("v_{} [N m]", axis)}};
+      Panel sigma{.x = {"t [s]"}, .y = {fmt::format("|sigma_{}|", axis), true, 1e-12}};
+      Panel sliding{.x = {"t [s]"}, .y = {fmt::format("|s_{}| [1/s]", axis), true, 1e-12}};
       for (Record const* run : runs) {
         Cell const& c = run->of;
         if (arrival_of(c) != t_f || inertia_error_of(c) != 0) continue;
@@ -168,8 +161,7 @@ void add_jumps(Document& document, Facts const& facts, std::vector<Record const*
               .caption =
                   "Jump of the command at t_f [N m], from straight lines through the samples on either side of it, "
                   "for the nominal inertia. Where commands chatter it is no better than the chatter.",
-              .columns = {{"t_f [s]", true}, {"actuators, path"}, {"v_x", true}, {"v_y", true}, {"v_z", true}},
-              .rows = {}};
+              .columns = {{"t_f [s]", true}, {"actuators, path"}, {"v_x", true}, {"v_y", true}, {"v_z", true}}};
   for (Record const* run : runs) {
     Cell const& c = run->of;
     if (inertia_error_of(c) != 0) continue;
@@ -180,8 +172,7 @@ void add_jumps(Document& document, Facts const& facts, std::vector<Record const*
   if (table.rows.empty()) return;
   document.say(
       "The second derivative of the cubic path jumps at t_f, against the paper's condition 1, and the command with it. "
-      "It "
-      "does not on the quintic path. t_f is announced, so every method ends a step on it.");
+      "It does not on the quintic path. t_f is announced, so every method ends a step on it.");
   document.add(std::move(table));
 }
 
@@ -215,8 +206,7 @@ void add_step_control(Document& document, Facts const& facts) {
                           {"steps", true},
                           {"rejected", true},
                           {"evaluations", true},
-                          {"steps, printed over smooth", true}},
-              .rows = {}};
+                          {"steps, printed over smooth", true}}};
   auto const count = [](std::optional<std::int64_t> n) { return n ? Entry(std::to_string(*n)) : Entry(absent); };
   std::size_t ended = 0;
   double least = INFINITY, most = 0;
@@ -246,8 +236,7 @@ void add_step_control(Document& document, Facts const& facts) {
   }
   document.say(fmt::format(
       "On the printed actuators the closed loop chatters in the gaps (it slides, in the sense of Filippov), however "
-      "short "
-      "the steps: {} of {} adaptive runs reach the end there{}. A run that does not get on ends with a status.",
+      "short the steps: {} of {} adaptive runs reach the end there{}. A run that does not get on ends with a status.",
       ended, pairs.size(),
       most > 0 ? fmt::format(", with {:.1f} to {:.1f} times the steps of the smooth problem", least, most) : ""));
   document.add(std::move(table));
@@ -270,9 +259,7 @@ void add_kinks(Document& document, Facts const& facts) {
                   "on the kinks, and steps across.",
        .panels = {error_panel(facts, "kinks located", part(true)), error_panel(facts, "not located", part(false))},
        .columns = 2,
-       .same_y = true,
-       .svg = {},
-       .why_not = ""});
+       .same_y = true});
   document.add(
       error_table("dead-zone-kinks",
                   "Attitude error at the end [rad] by step, the measured order, and how many kinks a run ended "

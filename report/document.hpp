@@ -53,9 +53,9 @@ struct Column {
 
 struct Table {
   std::string name;  ///< of its file, tables/NAME.csv: chosen by the report, never taken from a record
-  Text caption;
-  std::vector<Column> columns;
-  std::vector<std::vector<Entry>> rows;
+  Text caption = {};
+  std::vector<Column> columns = {};
+  std::vector<std::vector<Entry>> rows = {};
   bool has_file = true;  ///< tables/NAME.csv stands beside the document
 };
 
@@ -78,8 +78,8 @@ struct Style {
 
 struct Curve {
   std::string label;  ///< in the legend; empty: none is needed
-  Style style;
-  std::vector<Point> points;
+  Style style = {};
+  std::vector<Point> points = {};
 };
 
 struct Axis {
@@ -90,7 +90,7 @@ struct Axis {
 
 struct Panel {
   Axis x, y;
-  std::vector<Curve> curves;
+  std::vector<Curve> curves = {};
   bool equal_scale = false;  ///< one metre is as long in x as in y
   double rounding = 0;       ///< y below which the picture is shaded: rounding rules there
   std::string title = {};    ///< above the panel
@@ -98,20 +98,20 @@ struct Panel {
 
 struct Figure {
   std::string name;  ///< of its files, figures/NAME.*: chosen by the report, never taken from a record
-  Text caption;
-  std::vector<Panel> panels;
-  int columns = 1;                 ///< panels beside each other
-  bool same_y = false;             ///< all panels have the same range of y
-  bool poster = false;             ///< large type, thick lines, and a legend under each panel: to be shown alone
-  std::optional<std::string> svg;  ///< what gnuplot drew; absent if it could not
-  std::string why_not;             ///< why there is no picture
+  Text caption = {};
+  std::vector<Panel> panels = {};
+  int columns = 1;                      ///< panels beside each other
+  bool same_y = false;                  ///< all panels have the same range of y
+  bool poster = false;                  ///< large type, thick lines, and a legend under each panel: to be shown alone
+  std::optional<std::string> svg = {};  ///< what gnuplot drew; absent if it could not
+  std::string why_not = {};             ///< why there is no picture
 };
 
 using Block = std::variant<Heading, Paragraph, Table, Figure>;
 
 struct Document {
   std::string title;
-  std::vector<Block> blocks;
+  std::vector<Block> blocks = {};
   int sections = 0;  ///< so far
 
   /// A heading of level 2 with its number.

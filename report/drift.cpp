@@ -59,8 +59,7 @@ Table drift_table(Instance const& instance, Rows const& rows, std::size_t n) {
                                      "before its projection, \"delivered\" what the user gets. {} means that there is "
                                      "no such run.",
                                      instance.label, absent),
-              .columns = {{"integrator"}, {"policy"}, {"norm drift"}},
-              .rows = {}};
+              .columns = {{"integrator"}, {"policy"}, {"norm drift"}}};
   for (Control const& control : controls) table.columns.push_back({control.label, true});
   for (auto const& [method, runs] : rows) {
     auto const& [rival, integrator, policy] = method;
@@ -152,10 +151,10 @@ void add_drift(Document& document, Facts const& facts) {
   document.section("Norm drift, with and without projection");
   document.say(
       "Figure 3 of Xu et al. (2017, doi 10.21656/1000-0887.380168) shows a norm violation of the two-stage Gauss "
-      "method "
-      "without projection. A Gauss method keeps quadratic invariants such as q.q if its stage equations are solved to "
-      "round-off. A visible drift then comes from elsewhere: initial data that are not normalised (variant raw_q0), a "
-      "fixed small number of sweeps (gauss2_sweeps1, gauss2_sweeps2) or a loose stopping tolerance (gauss2_tol6).");
+      "method without projection. A Gauss method keeps quadratic invariants such as q.q if its stage equations are "
+      "solved to round-off. A visible drift then comes from elsewhere: initial data that are not normalised (variant "
+      "raw_q0), a fixed small number of sweeps (gauss2_sweeps1, gauss2_sweeps2) or a loose stopping tolerance "
+      "(gauss2_tol6).");
   std::size_t n = 0;
   std::vector<std::string> single;
   for (Instance const& instance : facts.instances) {

@@ -27,8 +27,7 @@ Table quantile_table(Ensemble const& ensemble) {
                   "Quantiles over all samples with their 95% intervals, from order statistics without an "
                   "assumption on the distribution, to 0.8%. Samples without a value lie above all others; mean and "
                   "extremes are of those that have one.",
-              .columns = {{"metric"}, {"unit"}, {"mean", true}},
-              .rows = {}};
+              .columns = {{"metric"}, {"unit"}, {"mean", true}}};
   for (double const p : results::shown_quantiles) table.columns.push_back({fmt::format("{:g}%", 100 * p), true});
   for (char const* title : {"min", "max", "of sample", "without a value"}) table.columns.push_back({title, true});
   for (EnsembleMetric const& metric : ensemble.metrics) {
@@ -48,8 +47,7 @@ Table worst_table(Ensemble const& ensemble) {
               .caption = Text({{"The samples with the greatest values, and the first of those that did not end well. "},
                                {ensemble.replay, true},
                                {" runs sample K again, to the last bit."}}),
-              .columns = {{"what"}, {"samples"}},
-              .rows = {}};
+              .columns = {{"what"}, {"samples"}}};
   for (EnsembleMetric const& metric : ensemble.metrics) {
     std::vector<std::string> samples;
     for (results::SampleValue const& worst : metric.worst)
@@ -82,14 +80,14 @@ Panel histogram_of(EnsembleMetric const& metric, std::int64_t samples) {
       share[std::size_t(i)] += part * inside;
     }
   }
-  Curve outline{.label = "", .style = {.index = 3, .points = false}, .points = {}};
+  Curve outline{.label = "", .style = {.index = 3, .points = false}};
   auto const value = [&](double at) { return log ? std::pow(10, at) : at; };
   for (int i = 0; i < bins; ++i) {
     outline.points.push_back({value(from + i * width), share[std::size_t(i)]});
     outline.points.push_back({value(from + (i + 1) * width), share[std::size_t(i)]});
   }
   std::string const label = metric.unit.empty() ? metric.name : fmt::format("{} [{}]", metric.name, metric.unit);
-  Panel panel{.x = {label, log}, .y = {"share of samples"}, .curves = {}};
+  Panel panel{.x = {label, log}, .y = {"share of samples"}};
   panel.curves.push_back(std::move(outline));
   return panel;
 }
@@ -99,10 +97,7 @@ void add_histograms(Document& document, Ensemble const& ensemble) {
                 .caption =
                     "Share of all samples in each of 40 equal bins from the least to the greatest value; on a "
                     "logarithmic axis in its logarithm.",
-                .panels = {},
-                .columns = 2,
-                .svg = {},
-                .why_not = ""};
+                .columns = 2};
   for (EnsembleMetric const& metric : ensemble.metrics)
     if (metric.least && metric.greatest && metric.least->value < metric.greatest->value)
       figure.panels.push_back(histogram_of(metric, ensemble.samples));

@@ -59,8 +59,7 @@ void add_erratum(Document& document, Facts const& facts) {
                           {"energy", true},
                           {"|L|", true},
                           {"direction of L [rad]", true},
-                          {"[deg]", true}},
-              .rows = {}};
+                          {"[deg]", true}}};
   double length = 0, correct = 0, printed = 0;
   for (Signs const& pair : pairs) {
     for (Record const* run : {pair.correct, pair.printed}) {

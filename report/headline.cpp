@@ -45,11 +45,7 @@ Panel drift_panel(Facts const& facts) {
                             {"rk4", "quaternion", "rk4"},
                             {"gauss2", "quaternion", "gauss2, to round-off"}};
   constexpr Dash dashes[] = {Dash::solid, Dash::solid, Dash::dashed, Dash::solid};
-  Panel panel{.x = {"t [s]", true},
-              .y = {"|q.q - 1|", true, least_drift},
-              .curves = {},
-              .rounding = 0,
-              .title = "Norm drift without projection"};
+  Panel panel{.x = {"t [s]", true}, .y = {"|q.q - 1|", true, least_drift}, .title = "Norm drift without projection"};
   for (Instance const& instance : facts.instances) {
     if (!is_captured_target(instance.like())) continue;
     for (Line const& line : lines) {
@@ -59,7 +55,7 @@ Panel drift_panel(Facts const& facts) {
         if (!line.is(of) || of.h != step || !is_ok(*run) || !series) continue;
         auto const t = column_of(*series, "t"), drift = column_of(*series, "norm_drift");
         if (!t || !drift) continue;
-        Curve curve{std::string(line.label), facts.style_of(of), {}};
+        Curve curve{std::string(line.label), facts.style_of(of)};
         curve.style.dash = dashes[&line - lines];
         for (auto const& row : series->rows) {
           if (row.size() <= std::max(*t, *drift) || !(row[*t] > 0)) continue;
@@ -77,11 +73,7 @@ Panel drift_panel(Facts const& facts) {
 /// Error against cost on the free body: few methods, own and rival.
 Panel cost_panel(Facts const& facts) {
   Instance const* instance = facts.headline(headlines[0]);
-  Panel panel{.x = {"", true},
-              .y = {"attitude error [rad]", true},
-              .curves = {},
-              .rounding = 0,
-              .title = "Accuracy against cost, free body"};
+  Panel panel{.x = {"", true}, .y = {"attitude error [rad]", true}, .title = "Accuracy against cost, free body"};
   if (!instance) return panel;
   bool const timed = measure_of(*instance) == Measure::time;
   panel.x.label = timed ? "CPU time of the solve [s]" : "evaluations";
@@ -92,7 +84,7 @@ Panel cost_panel(Facts const& facts) {
       if (line.is(sweep.like()) && (!shown || sweep.like().h)) shown = &sweep;
     }
     if (!shown) continue;
-    Curve curve{std::string(line.label), facts.style_of(shown->like()), {}};
+    Curve curve{std::string(line.label), facts.style_of(shown->like())};
     for (Record const* run : shown->runs) {
       auto const error = finite(run->attitude_error_max);
       std::optional<double> cost;
@@ -116,8 +108,7 @@ Table headline_table(Facts const& facts) {
                           {"|q.q - 1|, h = 0.1 s", true},
                           {"attitude error [rad], h = 0.1 s", true},
                           {"evaluations to 1e-6 rad", true},
-                          {"to 1e-9 rad", true}},
-              .rows = {}};
+                          {"to 1e-9 rad", true}}};
   Instance const* body = facts.headline(headlines[0]);
   for (Line const& line : raced) {
     std::optional<double> drift, error;
@@ -145,7 +136,7 @@ Table headline_table(Facts const& facts) {
 }  // namespace
 
 void add_headline(Document& document, Facts const& facts) {
-  Figure figure{.name = "headline", .caption = {}, .panels = {}, .poster = true, .svg = {}, .why_not = ""};
+  Figure figure{.name = "headline", .poster = true};
   std::string caption;
   if (Panel panel = drift_panel(facts); !panel.curves.empty()) {
     figure.panels.push_back(std::move(panel));

@@ -189,8 +189,7 @@ Table order_table(std::vector<Subject> const& subjects) {
                           {"± 95%", true},
                           {"points", true},
                           {"order measured on"},
-                          {"evaluations per step"}},
-              .rows = {}};
+                          {"evaluations per step"}}};
   for (Subject const& s : subjects) {
     bool const is_known = s.order && s.order->points >= least_points;
     table.rows.push_back({s.name, said(s, &results::IntegratorFacts::family),
@@ -210,8 +209,7 @@ Table kept_table(std::vector<Subject> const& subjects) {
                                      "little; \"claimed\" if the catalogue says that it is kept. Symplectic and "
                                      "symmetric are claims alone, which no drift measures.",
                                      significant(coarse_step)),
-              .columns = {{"integrator"}},
-              .rows = {}};
+              .columns = {{"integrator"}}};
   for (Quantity const& q : quantities) table.columns.push_back({fmt::format("{}{}", q.name, q.unit), true});
   table.columns.insert(table.columns.end(), {{"claimed structure"}, {"run"}, {"claims", false, true}});
   for (Subject const& s : subjects) {
@@ -232,8 +230,7 @@ Table kept_table(std::vector<Subject> const& subjects) {
 Table source_table(std::vector<Subject> const& subjects) {
   Table table{.name = "integrators-sources",
               .caption = "Where each is from, and what to beware of.",
-              .columns = {{"integrator"}, {"source"}, {"pitfall"}},
-              .rows = {}};
+              .columns = {{"integrator"}, {"source"}, {"pitfall"}}};
   for (Subject const& s : subjects) {
     if (!s.facts) continue;
     table.rows.push_back(
@@ -279,17 +276,15 @@ void add_integrators(Document& document, Facts const& facts) {
   document.section("Integrators");
   auto const subjects = subjects_of(facts);
   if (subjects.empty()) return document.say("The records hold no run.");
-  document.say(fmt::format(
-      "Every integrator of these records. Order and evaluations per step are of fixed steps. Orders are of the heavy "
-      "top, "
-      "whose torque depends on the attitude, else of pd_slew, which comes to rest and forgives errors, else of the "
-      "free "
-      "body, which suits some methods better than their order says, else of what there is; in quaternions, else on S^3 "
-      "or SO(3). An order takes {} points whose slopes agree, since two lie on a line whatever it is; methods of high "
-      "order reach round-off before they have as many. Evaluations are those at the step nearest {} s; 0 means that "
-      "the "
-      "method moves a free body without asking for the torque. \"{}\" is what the records do not tell.",
-      least_points, significant(usual_step), not_measured));
+  document.say(
+      fmt::format("Every integrator of these records. Order and evaluations per step are of fixed steps. Orders are of "
+                  "the heavy top, whose torque depends on the attitude, else of pd_slew, which comes to rest and "
+                  "forgives errors, else of the free body, which suits some methods better than their order says, else "
+                  "of what there is; in quaternions, else on S^3 or SO(3). An order takes {} points whose slopes "
+                  "agree, since two lie on a line whatever it is; methods of high order reach round-off before they "
+                  "have as many. Evaluations are those at the step nearest {} s; 0 means that the method moves a free "
+                  "body without asking for the torque. \"{}\" is what the records do not tell.",
+                  least_points, significant(usual_step), not_measured));
   document.add(order_table(subjects));
   document.add(kept_table(subjects));
   if (Table sources = source_table(subjects); !sources.rows.empty()) document.add(std::move(sources));

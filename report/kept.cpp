@@ -13,7 +13,6 @@ namespace {
 
 using results::Record;
 
-
 struct Quantity {
   std::string_view name;
   std::optional<double> Record::*drift;
@@ -84,8 +83,7 @@ void add_kept(Document& document, Facts const& facts) {
                             {"|L|", true},
                             {"direction of L [rad]", true},
                             {"attitude error [rad]", true},
-                            {"kept"}},
-                .rows = {}};
+                            {"kept"}}};
     std::vector<Record const*> shown;
     for (Sweep const& sweep : instance.sweeps()) {
       for (Record const* run : sweep.runs) {

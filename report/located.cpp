@@ -90,8 +90,7 @@ Table error_table(std::string name, std::string caption, std::vector<Sweep> cons
                           {"events located", true},
                           {"order", true},
                           {"± 95%", true},
-                          {"points", true}},
-              .rows = {}};
+                          {"points", true}}};
   std::set<double, std::greater<>> steps;
   for (Sweep const& sweep : sweeps) {
     for (Record const* run : sweep.runs) steps.insert(*run->of.h);
@@ -119,12 +118,11 @@ Table error_table(std::string name, std::string caption, std::vector<Sweep> cons
 Panel error_panel(Facts const& facts, std::string title, std::vector<Sweep> const& sweeps, ErrorKind const& kind) {
   Panel panel{.x = {"h [s]", true},
               .y = {std::string(kind.label), true, 1e-16 * kind.scale},
-              .curves = {},
               .rounding = 1e-13 * kind.scale,
               .title = std::move(title)};
   for (Sweep const& sweep : sweeps) {
     Cell const& c = sweep.like();
-    Curve curve{c.integrator, facts.style_of(c), {}};
+    Curve curve{c.integrator, facts.style_of(c)};
     for (Record const* run : sweep.runs) {
       auto const error = finite(kind.of(*run));
       bool const grey = error && kind.has_bar && *error <= finite(run->reference_bar).value_or(0);

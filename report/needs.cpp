@@ -190,8 +190,7 @@ void add_needs(Document& document, Facts const& facts) {
                           {"cost", true},
                           {"at 1e-9 rad", true},
                           {"runner-up"},
-                          {"best rival"}},
-              .rows = {}};
+                          {"best rival"}}};
   for (Need const& need : needs) table.rows.push_back(row_of(need, asked(facts, need)));
   document.add(std::move(table));
   document.say(

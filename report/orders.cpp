@@ -26,8 +26,7 @@ void add_orders(Document& document, Facts const& facts) {
                           {"± 95%", true},
                           {"points", true},
                           {"h from [s]", true},
-                          {"to [s]", true}},
-              .rows = {}};
+                          {"to [s]", true}}};
   std::size_t left_out = 0;
   for (Instance const& instance : facts.instances) {
     if (is_aside(instance.like())) continue;

@@ -18,10 +18,9 @@ std::string still_picture(std::vector<NamedSpin> const& spins) {
   NamedSpin const& first = spins.front();
   return fmt::format(
       "<figure class=\"still\">\n<div class=\"wide\">{}</div>\n<figcaption>Polhodes on the inertia ellipsoid of {}: "
-      "the "
-      "body rate without torque runs around the axis of the greatest or of the least moment of inertia; in colour the "
-      "polhode of the motion itself, with its start. {}From the integrals of motion, not from a run.</figcaption>\n"
-      "</figure>\n",
+      "the body rate without torque runs around the axis of the greatest or of the least moment of inertia; in colour "
+      "the polhode of the motion itself, with its start. {}From the integrals of motion, not from a "
+      "run.</figcaption>\n</figure>\n",
       polhode_svg(first.spin, "Polhodes of " + first.label), escape_html(first.label),
       first.has_products ? "In principal axes: the inertia has products. " : "");
 }

@@ -62,8 +62,7 @@ Table provenance_table(Paper const& paper) {
               .caption =
                   "Where the problem's data come from: printed in the paper; deduced from what is; or chosen here, "
                   "because nothing printed decides.",
-              .columns = {{"data"}, {"value"}, {"source"}, {"note"}},
-              .rows = {}};
+              .columns = {{"data"}, {"value"}, {"source"}, {"note"}}};
   for (Datum const& d : paper.data) {
     table.rows.push_back(
         {std::string(d.what), std::string(d.value), std::string(name_of(d.source)), std::string(d.how)});
@@ -74,8 +73,7 @@ Table provenance_table(Paper const& paper) {
 Table errata_table(Paper const& paper) {
   Table table{.name = fmt::format("{}-errata", paper.problem),
               .caption = "Errata.",
-              .columns = {{"where"}, {"in print"}, {"should be"}},
-              .rows = {}};
+              .columns = {{"where"}, {"in print"}, {"should be"}}};
   for (Erratum const& e : paper.errata) {
     table.rows.push_back({std::string(e.where), std::string(e.printed), std::string(e.correct)});
   }
@@ -110,8 +108,7 @@ Entry verdict_of(Record const* run, std::string_view name, double factor) {
 Table claim_table(Paper const& paper, std::vector<CaseRuns> const& sets, std::string name, std::string caption) {
   Table table{.name = std::move(name),
               .caption = Text(std::move(caption)),
-              .columns = {{"case"}, {"claim"}, {"the paper"}, {"published", true}, {"unit"}},
-              .rows = {}};
+              .columns = {{"case"}, {"claim"}, {"the paper"}, {"published", true}, {"unit"}}};
   for (CaseRuns const& cases : sets) table.columns.push_back({cases.title, true});
   for (Statement const& s : rows_of(paper, sets)) {
     std::vector<Entry> row{std::string(s.of.starts_with("case") ? s.of.substr(4) : s.of), std::string(s.name),

@@ -29,8 +29,7 @@ Paper const& tether_capture() {
           "the quaternion theory\", Applied Mathematics and Mechanics 38(12), 1309, doi 10.21656/1000-0887.380168",
       .about =
           "A tethered robot has caught a tumbling target and brings it to rest with the grapple arm along the tether, "
-          "by "
-          "its tension, by thrusters, or by both.",
+          "by its tension, by thrusters, or by both.",
       .cases = {"case1", "case2", "case3"},
       .unsaid = {},
       .apart = {"coupled"},
@@ -112,8 +111,7 @@ Paper const& group_consensus() {
           "consensus\", Scientia Sinica Technologica 50(5)",
       .about =
           "Five rigid bodies in groups of three and two are pulled to a common motion within each group, by torques "
-          "that "
-          "see modified Rodrigues parameters and rates of neighbours.",
+          "that see modified Rodrigues parameters and rates of neighbours.",
       .cases = {"ic1", "ic2", "ic3"},
       .unsaid = {},
       .apart = {"unlocated", "theorem2"},
@@ -159,8 +157,7 @@ Paper const& dead_zone() {
           "doi 10.11918/j.issn.0367-6234.201704116",
       .about =
           "A spacecraft follows a path that comes to rest at a chosen time t_f, by a sliding law with a boundary "
-          "layer, "
-          "through actuators that do nothing around zero and have jumps at the ends of that gap.",
+          "layer, through actuators that do nothing around zero and have jumps at the ends of that gap.",
       .cases = {"printed", "continuous", "smooth"},
       .unsaid = {"cubic", "n2"},
       .apart = {"unlocated"},

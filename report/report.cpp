@@ -14,7 +14,7 @@ namespace polhode::report {
 namespace {
 
 Document document_of(Facts const& facts) {
-  Document document{.title = "Polhode: report", .blocks = {}};
+  Document document{.title = "Polhode: report"};
   document.say(
       Text({{fmt::format("Made from {} alone by ", counted(facts.runs.size(), "record", "records"))},
             {"polhode report DIR", true},

@@ -51,7 +51,7 @@ std::vector<Comparison> comparisons_of(Facts const& facts) {
 }
 
 Curve curve_of(std::string label, Style const& style, Sweep const& sweep) {
-  Curve curve{std::move(label), style, {}};
+  Curve curve{std::move(label), style};
   for (Record const* run : sweep.runs) curve.points.push_back({*run->of.h, *run->attitude_error_max, below_bar(*run)});
   return curve;
 }
@@ -75,8 +75,7 @@ void add(Document& document, Facts const& facts, Comparison const& c, std::size_
               .caption = fmt::format("{}: largest attitude error [rad] against the trajectory under the problem's own "
                                      "sample period.",
                                      what),
-              .columns = {{"h [s]", true}, {"own period", true}, {"period tied to h", true}},
-              .rows = {}};
+              .columns = {{"h [s]", true}, {"own period", true}, {"period tied to h", true}}};
   for (auto const& [h, runs] : steps) {
     auto const error = [](Record const* run) { return run ? number(run->attitude_error_max) : Entry(absent); };
     table.rows.push_back({number(h), error(runs.first), error(runs.second)});
@@ -93,10 +92,7 @@ void add(Document& document, Facts const& facts, Comparison const& c, std::size_
                              what),
       .panels = {{.x = {"h [s]", true},
                   .y = {"attitude error, max [rad]", true},
-                  .curves = {curve_of("own period", style, c.own), curve_of("period tied to h", tied, c.tied)},
-                  .title = ""}},
-      .svg = {},
-      .why_not = ""});
+                  .curves = {curve_of("own period", style, c.own), curve_of("period tied to h", tied, c.tied)}}}});
   Record const& finest = *c.tied.runs.back();
   Record const& coarsest = *c.tied.runs.front();
   bool const vanishes = *finest.attitude_error_max < *coarsest.attitude_error_max && c.tied.runs.size() > 1;

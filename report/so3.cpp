@@ -64,7 +64,7 @@ constexpr double equal_times = 0.005;
 
 /// What one gain set makes of the methods.
 struct Ranking {
-  std::string gains, words;
+  std::string gains, words = {};
   bool equal = false, as_printed = false;
 };
 
@@ -83,7 +83,7 @@ std::optional<Ranking> rank(CaseRuns const& cases) {
   if (times.size() < 2) return {};
   std::ranges::stable_sort(times, {}, &Time::ours);
   Cell const& c = like(cases);
-  Ranking r{.gains = fmt::format("{} (delta = {})", gains_of(c), significant(delta_of(c))), .words = ""};
+  Ranking r{.gains = fmt::format("{} (delta = {})", gains_of(c), significant(delta_of(c)))};
   double const spread = times.back().ours / times.front().ours - 1;
   r.equal = spread <= equal_times;
   r.as_printed = !r.equal && std::ranges::is_sorted(times, {}, &Time::printed);
@@ -128,12 +128,12 @@ void add_times(Document& document, std::vector<CaseRuns> const& sets) {
 
 /// What rho, delta and the surfaces do to t1 under method 1.
 void add_command(Document& document, std::vector<CaseRuns> const& sets) {
-  Table table{.name = "so3-command",
-              .caption =
-                  "Method 1 from small angles: t1 by surface, smoothing delta and feed-forward rho; \"yes\" if within "
-                  ".002 s of our own to many digits.",
-              .columns = {{"surface"}, {"delta", true}, {"rho", true}, {"run"}, {"t1 [s]", true}, {"q_a at 5 s", true}},
-              .rows = {}};
+  Table table{
+      .name = "so3-command",
+      .caption =
+          "Method 1 from small angles: t1 by surface, smoothing delta and feed-forward rho; \"yes\" if within "
+          ".002 s of our own to many digits.",
+      .columns = {{"surface"}, {"delta", true}, {"rho", true}, {"run"}, {"t1 [s]", true}, {"q_a at 5 s", true}}};
   std::optional<double> fed, not_fed;
   std::set<std::tuple<std::string, double, double>> seen;  // a parameter that is set may be the problem's own
   for (CaseRuns const& cases : sets) {
@@ -164,15 +164,11 @@ void add_histories(Document& document, Facts const& facts, std::vector<CaseRuns>
                 .caption =
                     "How far the craft are apart: root mean squares of the differences of Euler angles from craft 1's "
                     "(q_a, the paper's measure) and of the angle to it (q_geo). Stars: the printed times t1.",
-                .panels = {},
-                .columns = 2,
-                .svg = {},
-                .why_not = ""};
+                .columns = 2};
   for (CaseRuns const& cases : sets) {
     for (char const* column : {"q_a", "q_geo"}) {
-      Panel panel{
-          .x = {"t [s]"}, .y = {fmt::format("{} [deg]", column), true, 1e-4}, .curves = {}, .title = cases.title};
-      Curve printed{"printed t1", {.index = 8, .line = false}, {}};
+      Panel panel{.x = {"t [s]"}, .y = {fmt::format("{} [deg]", column), true, 1e-4}, .title = cases.title};
+      Curve printed{"printed t1", {.index = 8, .line = false}};
       for (std::size_t k = 0; k < colours.size(); ++k) {
         Record const* run = cases.find(so3_cooperative().cases[k]);
         if (!run) continue;
@@ -216,13 +212,10 @@ void add_torques(Document& document, Facts const& facts) {
       .name = "so3-torques",
       .caption = fmt::format("Torques under method 1, delta = {}, rho = {}: {}, {}.", significant(delta_of(run->of)),
                              significant(rho_of(run->of)), method_of(run->of), control_of(run->of)),
-      .panels = {},
-      .columns = 2,
-      .svg = {},
-      .why_not = ""};
+      .columns = 2};
   double greatest = 0;
   for (char const axis : {'x', 'y', 'z'}) {
-    Panel panel{.x = {"t [s]"}, .y = {fmt::format("M_{} [N m]", axis)}, .curves = {}};
+    Panel panel{.x = {"t [s]"}, .y = {fmt::format("M_{} [N m]", axis)}};
     for (std::size_t k = 0; k < colours.size(); ++k) {
       add_curve(panel, against_time(facts, *run, fmt::format("b{}.m{}", k + 1, axis), fmt::format("craft {}", k + 1),
                                     {.index = colours[k], .dash = dashes[k], .points = false}));
@@ -274,13 +267,10 @@ void add_jump(Document& document, Facts const& facts) {
                 .caption = fmt::format("Craft 2 from large angles (ex2): Euler angles, and an entry of its rotation "
                                        "matrix. {}, {}.",
                                        method_of(run->of), control_of(run->of)),
-                .panels = {},
-                .columns = 2,
-                .svg = {},
-                .why_not = ""};
+                .columns = 2};
   for (auto const& [column, label] : {std::pair("b2.pitch", "pitch [deg]"), std::pair("b2.yaw", "yaw [deg]"),
                                       std::pair("b2.roll", "roll [deg]"), std::pair("b2.r23", "R_23")}) {
-    Panel panel{.x = {"t [s]"}, .y = {label}, .curves = {}};
+    Panel panel{.x = {"t [s]"}, .y = {label}};
     add_curve(panel,
               against_time(facts, *run, column, "craft 2", {.index = 3, .points = false}, {.from = from, .to = to}));
     figure.panels.push_back(std::move(panel));

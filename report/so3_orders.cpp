@@ -45,11 +45,8 @@ void add_order(Document& document, Facts const& facts) {
                 .caption =
                     "Attitude error at the end against the step, from small angles on the far surface, by "
                     "description of the attitude. Open symbols: rivals. The shade is where rounding rules.",
-                .panels = {},
                 .columns = 2,
-                .same_y = true,
-                .svg = {},
-                .why_not = ""};
+                .same_y = true};
   std::vector<std::string> words;
   for (Description const& d : descriptions) {
     auto sweeps = several_steps(smooth(facts, d.formulation));
@@ -82,11 +79,8 @@ void add_orthogonality(Document& document, Facts const& facts) {
                 .caption =
                     "How far R is from a rotation, |R^T R - 1| (Frobenius), against the step: nine numbers that "
                     "nobody keeps orthogonal, and steps that are rotations. The shade is where rounding rules.",
-                .panels = {},
                 .columns = 2,
-                .same_y = true,
-                .svg = {},
-                .why_not = ""};
+                .same_y = true};
   std::vector<std::string> drifting, kept;
   double worst = 0;
   for (Description const& d : descriptions) {
@@ -139,9 +133,7 @@ void add_switching(Document& document, Facts const& facts) {
                         .panels = {error_panel(facts, "change located", part(true)),
                                    error_panel(facts, "not located", part(false))},
                         .columns = 2,
-                        .same_y = true,
-                        .svg = {},
-                        .why_not = ""});
+                        .same_y = true});
   document.add(error_table("so3-switching",
                            "Attitude error at the end [rad] by step, the measured order, and how many changes of "
                            "surface a run ended a step on.",

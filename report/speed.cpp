@@ -64,8 +64,7 @@ void add_winner_map(Document& document, std::vector<Race> const& races) {
               .caption =
                   "Who is first to an attitude error, and how many times as long the best of the other side "
                   "takes (with its 95% interval): our best against the best of all libraries.",
-              .columns = {{"problem"}, {"control"}},
-              .rows = {}};
+              .columns = {{"problem"}, {"control"}}};
   for (double const target : speed_targets) table.columns.push_back({significant(target) + " rad"});
   std::size_t const targets = std::size(speed_targets);
   for (std::size_t i = 0; i + targets <= races.size(); i += targets) {
@@ -124,8 +123,7 @@ void add_races(Document& document, std::vector<Race> const& races, bool adaptive
               .caption = fmt::format("{} Ratio: time of the best rival over time of our best{}; below 1 the rival is "
                                      "faster. Its interval is that of the two times.",
                                      how, adaptive ? "" : ", both at the target where they are interpolated"),
-              .columns = {{"problem"}, {"target [rad]", true}, {"first"}},
-              .rows = {}};
+              .columns = {{"problem"}, {"target [rad]", true}, {"first"}}};
   for (char const* const side : {"ours", "best rival"}) {
     table.columns.push_back({side});
     table.columns.push_back({adaptive ? "tolerance" : "step"});
@@ -154,8 +152,7 @@ void add_libraries(Document& document, std::vector<Race> const& races) {
               .caption =
                   "The best of each library, and its time over that of our best (below 1: the library is "
                   "faster).",
-              .columns = {{"problem"}, {"control"}, {"target [rad]", true}, {"ours"}, {"time", true}},
-              .rows = {}};
+              .columns = {{"problem"}, {"control"}, {"target [rad]", true}, {"ours"}, {"time", true}}};
   for (std::string_view const library : libraries) {
     table.columns.push_back({std::string(library)});
     table.columns.push_back({"time", true});
@@ -203,8 +200,7 @@ void add_methods(Document& document, Instance const& instance, std::size_t n) {
               .caption = fmt::format("{}: every method's time to an error; \"never\" if none of its runs reached it. "
                                      "Failed are runs that did not end with status ok.",
                                      instance.label),
-              .columns = {{"control"}, {"method"}, {"side"}},
-              .rows = {}};
+              .columns = {{"control"}, {"method"}, {"side"}}};
   for (double const target : speed_targets) table.columns.push_back({significant(target) + " rad", true});
   table.columns.insert(table.columns.end(), {{"least error [rad]", true}, {"runs", true}, {"failed", true}});
   for (auto const& [key, of] : methods) {
@@ -246,8 +242,7 @@ void add_closed_forms(Document& document, Facts const& facts, std::vector<Race> 
                           {"best rival"},
                           {"to [rad]", true},
                           {"time", true},
-                          {"ratio", true}},
-              .rows = {}};
+                          {"ratio", true}}};
   for (Instance const& instance : facts.instances) {
     Cost closed, rival;
     double target = 0;
@@ -283,8 +278,7 @@ void add_machine(Document& document, std::vector<results::Meta> const& metas) {
       {"utc", "time (UTC)"}};
   Table table{.name = "speed-machine",
               .caption = "The machine, the compiler and the state of both when the times were taken.",
-              .columns = {{"what"}, {"value"}},
-              .rows = {}};
+              .columns = {{"what"}, {"value"}}};
   for (auto const& [key, what] : facts) {
     std::set<std::string> values;
     for (results::Meta const& meta : metas)

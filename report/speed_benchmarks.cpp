@@ -74,8 +74,7 @@ void add_steps(Document& document, Benchmarks const& all) {
               .caption =
                   "A step of fixed length, within a solve. Of tether_capture with the controller asked at every "
                   "second step. Steps of other problems stand in benchmarks.json.",
-              .columns = {{"method"}, {"formulation"}, {"side"}},
-              .rows = {}};
+              .columns = {{"method"}, {"formulation"}, {"side"}}};
   for (std::string_view const problem : problems) table.columns.push_back({std::string(problem), true});
   for (auto const& [key, prices] : rows) {
     auto const& [rival, integrator, formulation] = key;
@@ -112,8 +111,7 @@ void add_ensembles(Document& document, Benchmarks const& all) {
                           {"per body and step", true},
                           {"Odeint", true},
                           {"of the bound [%]", true},
-                          {"lost", true}},
-              .rows = {}};
+                          {"lost", true}}};
   auto const peak = price_of(all, "ensemble/fused_peak");
   for (Benchmark const& benchmark : all.all) {
     auto const parts = parts_of(benchmark.name);
@@ -151,8 +149,7 @@ void add_networks(Document& document, Benchmarks const& all) {
       .caption =
           "Networks of quaternion_sync over the same second: a step of one craft. Each hears its neighbour and one at "
           "random, wherever in memory that is. The last column is the largest network over that of 100.",
-      .columns = {{"method"}},
-      .rows = {}};
+      .columns = {{"method"}}};
   for (auto const& [n, there] : sizes) table.columns.push_back({fmt::format("n = {}", n), true});
   table.columns.insert(table.columns.end(), {{"largest / 100", true}, {"95%"}});
   for (auto const& [method, prices] : rows) {
@@ -194,8 +191,7 @@ void add_ratios(Document& document, Benchmarks const& all) {
               .caption =
                   "Pairs of one run: the time of the first over that of the second, with its 95% interval. What "
                   "two threads gain is told by the long runs; short ones also pay for starting the second thread.",
-              .columns = {{"first / second"}, {"ratio", true}, {"95%"}},
-              .rows = {}};
+              .columns = {{"first / second"}, {"ratio", true}, {"95%"}}};
   for (Pair const& pair : pairs) {
     auto const over = price_of(all, pair.over), under = price_of(all, pair.under);
     if (!over || !under) continue;
@@ -210,8 +206,7 @@ void add_figures(Document& document, Benchmarks const& all) {
               .caption =
                   "Single figures. The periods of the sampled loop (its torque saturates; RK4, 5 steps) were "
                   "timed one by one, the clock included.",
-              .columns = {{"what"}, {"value", true}},
-              .rows = {}};
+              .columns = {{"what"}, {"value", true}}};
   auto const push = [&](std::string const& what, std::optional<Price> const& price) {
     if (price) table.rows.push_back({what, seconds(price)});
   };

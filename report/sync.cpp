@@ -49,7 +49,7 @@ std::vector<Shown> shown_runs(Facts const& facts, std::vector<std::string_view> 
 
 Panel panel_of(Facts const& facts, std::vector<Shown> const& shown, std::string_view column, std::string label,
                bool log) {
-  Panel panel{.x = {"t [s]"}, .y = {std::move(label), log, log ? 1e-6 : 0}, .curves = {}};
+  Panel panel{.x = {"t [s]"}, .y = {std::move(label), log, log ? 1e-6 : 0}};
   for (Shown const& s : shown) add_curve(panel, against_time(facts, *s.run, column, s.label, s.style));
   return panel;
 }
@@ -64,15 +64,11 @@ void add_histories(Document& document, Facts const& facts) {
                                    panel_of(facts, shown, "scalar_spread", "spread of scalar parts", true),
                                    panel_of(facts, shown, "scalar_min", "least scalar part", false),
                                    panel_of(facts, shown, "lyapunov", "V", false)},
-                        .columns = 2,
-                        .svg = {},
-                        .why_not = ""});
+                        .columns = 2});
   auto const trapped = shown_runs(facts, {"normalized trap"});
   add_figure(document, {.name = "sync-trap",
                         .caption = "From the trap: (7) stays, (13) gets out.",
-                        .panels = {panel_of(facts, trapped, "disagreement", "largest |q_i - q_j|", false)},
-                        .svg = {},
-                        .why_not = ""});
+                        .panels = {panel_of(facts, trapped, "disagreement", "largest |q_i - q_j|", false)}});
 }
 
 /// The column's last value; NaN if the run left none.
@@ -97,12 +93,12 @@ void say_norms(Document& document, Facts const& facts) {
     }
   }
   if (raw.empty()) return;
-  document.say(fmt::format(
-      "A rate turns a quaternion and cannot change its norm. The printed quaternions have different norms: at 20 s "
-      "their "
-      "vector parts have met, and their scalar parts differ by {}, for ever{}. The scalar consensus of figures 1 and 2 "
-      "does not follow from the printed data.",
-      listed(raw), normalised.empty() ? "" : fmt::format("; normalised, by {}", listed(normalised))));
+  document.say(
+      fmt::format("A rate turns a quaternion and cannot change its norm. The printed quaternions have different norms: "
+                  "at 20 s their vector parts have met, and their scalar parts differ by {}, for ever{}. The scalar "
+                  "consensus of figures 1 and 2 "
+                  "does not follow from the printed data.",
+                  listed(raw), normalised.empty() ? "" : fmt::format("; normalised, by {}", listed(normalised))));
 }
 
 void say_trap(Document& document, Facts const& facts) {
@@ -166,9 +162,7 @@ void add_order(Document& document, Facts const& facts) {
                 .panels = {error_panel(facts, "(7)", smooth), error_panel(facts, "(13), events located", located),
                            error_panel(facts, "(13), not located", not_located)},
                 .columns = 2,
-                .same_y = true,
-                .svg = {},
-                .why_not = ""};
+                .same_y = true};
   add_figure(document, std::move(figure));
   std::vector<Sweep> all = smooth;
   all.insert(all.end(), located.begin(), located.end());
@@ -209,8 +203,7 @@ void add_networks(Document& document, Facts const& facts) {
                           {"norm drift", true},
                           {"allocations per step", true},
                           {"events located", true},
-                          {"CPU time", true}},
-              .rows = {}};
+                          {"CPU time", true}}};
   std::vector<Record const*> runs;
   for (Record const* run : facts.runs) {
     auto const n = run->of.set.find("n");

@@ -167,11 +167,9 @@ void add_picture(Document& document, Facts const& facts, Study const& study) {
   Tolerances const near{std::max(x.low, shown_from), x.high};
   Panel rate{.x = {"relative tolerance", true},
              .y = {"steady |omega_x| of bodies 1 to 3 [rad/s]"},
-             .curves = {},
              .title = "What a run says"};
   Panel error{.x = {"relative tolerance", true},
               .y = {"distance of the six rates from the limit [rad/s]", true, 1e-10},
-              .curves = {},
               .title = "What it is worth"};
   rate.curves.push_back(level("printed", study.printed[0], near, 12, Dash::dashed));
   rate.curves.push_back(level("limit", study.limit[0], near, 4, Dash::solid));
@@ -179,7 +177,7 @@ void add_picture(Document& document, Facts const& facts, Study const& study) {
   for (auto const& [name, tries] : study.methods) {
     Style style = facts.style_of(tries.front().run->of);
     style.dash = Dash::solid;
-    Curve value{name, style, {}}, off{name, style, {}};
+    Curve value{name, style}, off{name, style};
     for (Try const& t : tries) {
       if (*t.run->of.rtol >= near.low) value.points.push_back({*t.run->of.rtol, t.rates[0]});
       if (t.from_limit > 0) off.points.push_back({*t.run->of.rtol, t.from_limit});
@@ -199,9 +197,7 @@ void add_picture(Document& document, Facts const& facts, Study const& study) {
                              significant(study.methods.front().second.front().run->of.atol.value_or(NAN)),
                              method_of(study.best->of), control_of(study.best->of)),
       .panels = {std::move(rate), std::move(error)},
-      .columns = 2,
-      .svg = {},
-      .why_not = ""});
+      .columns = 2});
 }
 
 void add_table(Document& document, Study const& study, std::string const& method) {
@@ -219,8 +215,7 @@ void add_table(Document& document, Study const& study, std::string const& method
                           {"y", true},
                           {"z", true},
                           {"from print", true},
-                          {"from the limit", true}},
-              .rows = {}};
+                          {"from the limit", true}}};
   auto const line = [&](Entry first, Entry steps, Entry rejected, Rates const& rates) {
     std::vector<Entry> row{std::move(first), std::move(steps), std::move(rejected)};
     for (double const r : rates) row.push_back(number(r, 4));
@@ -286,8 +281,7 @@ void say(Document& document, Study const& study) {
   }
   document.say(fmt::format(
       "The printed rates are those of a program at a tolerance, not of the swarm: {} at {} gives {} rad/s, within {} "
-      "of "
-      "print.{}{}",
+      "of print.{}{}",
       hit.run->of.integrator, tolerances_of(*hit.run), in_words(hit.rates, 3), significant(hit.from_print, 2),
       runs > 1 ? fmt::format(" Of the other {} the nearest is {} rad/s off.",
                              counted(runs - 1, "adaptive run", "adaptive runs"), significant(next, 2))

@@ -74,7 +74,7 @@ Curve curve(std::string label, int index, std::vector<Point> points) {
 }
 
 Panel panel(std::string y) {
-  return {.x = {"t [s]"}, .y = {std::move(y)}, .curves = {}};
+  return {.x = {"t [s]"}, .y = {std::move(y)}};
 }
 
 /// The angle of q0^-1 q, q normalised [deg].   2 atan2(|v|, |s|), which is exact for small and large ones alike
@@ -212,7 +212,7 @@ struct Scratch {
 }  // namespace
 
 Figure trajectory_figure(results::Series const& series, std::string const& title) {
-  Figure figure{.name = "trajectory", .caption = title, .panels = {}, .svg = {}, .why_not = {}};
+  Figure figure{.name = "trajectory", .caption = title};
   Rows const rows(series);
   if (rows.empty()) return figure;
   std::vector<std::string> const bodies = bodies_of(rows);

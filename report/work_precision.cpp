@@ -50,14 +50,12 @@ Panel panel_of(Facts const& facts, std::vector<Sweep> const& sweeps, Measure mea
   bool const timed = measure == Measure::time;
   Panel panel{.x = {timed ? "CPU time [s]" : "evaluations", true},
               .y = {"attitude error, max [rad]", true, machine_precision},
-              .curves = {},
-              .rounding = rounding,
-              .title = ""};
+              .rounding = rounding};
   bool const mixed = std::ranges::any_of(
       sweeps, [&](Sweep const& sweep) { return sweep.like().formulation != sweeps.front().like().formulation; });
   for (Sweep const& sweep : sweeps) {
     Cell const& c = sweep.like();
-    Curve curve{line_label(c, mixed), facts.style_of(c), {}};
+    Curve curve{line_label(c, mixed), facts.style_of(c)};
     for (Record const* run : sweep.runs) {
       auto const error = finite(run->attitude_error_max);
       if (!is_ok(*run) || !error || *error <= 0) continue;
@@ -73,12 +71,7 @@ Panel panel_of(Facts const& facts, std::vector<Sweep> const& sweeps, Measure mea
 
 std::size_t add_figures(Document& document, Facts const& facts, Instance const& instance, std::size_t n) {
   for (auto const& [part, sweeps] : parts_of(instance)) {
-    Figure figure{.name = fmt::format("work-precision-{}", n + 1),
-                  .caption = {},
-                  .panels = {},
-                  .columns = 2,
-                  .svg = {},
-                  .why_not = ""};
+    Figure figure{.name = fmt::format("work-precision-{}", n + 1), .columns = 2};
     std::string missing;
     for (Measure const measure : {Measure::time, Measure::evaluations}) {
       Panel panel = panel_of(facts, sweeps, measure);
@@ -140,8 +133,7 @@ Table cheapest_table(Instance const& instance, Measure measure, std::size_t n) {
                           {"low", true, true},
                           {"high", true, true},
                           {"at the target", true},
-                          {"times the best", true}},
-              .rows = {}};
+                          {"times the best", true}}};
   for (double const target : {1e-6, 1e-9}) {
     auto const costs = ranking(instance, target, measure);
     for (std::size_t i = 0; i < costs.size(); ++i) {
