@@ -4,28 +4,23 @@
 
 #include <cctype>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <regex>
 #include <set>
-#include <sstream>
 #include <string>
-#include <vector>
+
+#include "tests/documents.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
+using polhode::test::contents;
+using polhode::test::documents;
+using polhode::test::parts_of;
 using testing::Contains;
 using testing::HasSubstr;
 using testing::UnorderedElementsAre;
 
 fs::path const root = POLHODE_SOURCE_DIR;
-
-std::string contents(fs::path const& file) {
-  std::ifstream in(root / file);
-  EXPECT_TRUE(in) << file;
-  return {std::istreambuf_iterator<char>(in), {}};
-}
 
 /// The code block of `readme` that follows the comment `<!-- NAME -->`, without its fences.
 std::string block(std::string const& readme, std::string const& name) {
@@ -74,40 +69,17 @@ TEST(Readme, TablesListEveryHeaderOfTheirFolder) {
 
 // ---- Links ----------------------------------------------------------------------------------------------------------
 
-/// Markdown without its blocks of code.
-std::string prose(std::string const& text) {
-  std::istringstream in(text);
-  std::string kept;
-  bool code = false;
-  for (std::string line; std::getline(in, line);) {
-    if (line.starts_with("```"))
-      code = !code;
-    else if (!code)
-      kept += line + '\n';
-  }
-  return kept;
-}
-/// The anchors of its headings, as GitHub makes them: small letters, hyphens for blanks, no other signs.
+/// The anchors of the headings of Markdown, as GitHub makes them: small letters, hyphens for blanks, no other signs.
 std::set<std::string> anchors(std::string const& text) {
   static std::regex const heading("(^|\n)#+ ([^\n]+)");
   std::set<std::string> all;
-  std::string const kept = prose(text);
+  std::string const kept = parts_of(text).prose;
   for (std::sregex_iterator at(kept.begin(), kept.end(), heading), end; at != end; ++at) {
     std::string anchor;
     for (char const c : (*at)[2].str())
       if (std::isalnum(static_cast<unsigned char>(c)) || c == '-' || c == '_' || c == ' ')
         anchor += c == ' ' ? '-' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     all.insert(anchor);
-  }
-  return all;
-}
-/// Every Markdown file of the sources, from the root.
-std::vector<fs::path> documents() {
-  std::set<std::string> const not_ours{".git", "build", "node_modules", "polhode-results"};
-  std::vector<fs::path> all;
-  for (auto entry = fs::recursive_directory_iterator(root); entry != fs::recursive_directory_iterator(); ++entry) {
-    if (not_ours.contains(entry->path().filename())) entry.disable_recursion_pending();
-    if (entry->path().extension() == ".md") all.push_back(fs::relative(entry->path(), root));
   }
   return all;
 }
@@ -121,7 +93,7 @@ TEST(Readme, LinksLeadSomewhere) {
   static std::regex const link(R"(\]\(([^)\s#:]*)(#([^)\s]+))?\))");  // of this repository: without a scheme
   int links = 0, to_headings = 0;
   for (fs::path const& document : documents()) {
-    std::string const text = std::regex_replace(prose(contents(document)), code, "``");
+    std::string const text = std::regex_replace(parts_of(contents(document)).prose, code, "``");
     for (std::sregex_iterator at(text.begin(), text.end(), link), end; at != end; ++at, ++links) {
       fs::path const target = (*at)[1].length() == 0 ? document : document.parent_path() / (*at)[1].str();
       EXPECT_TRUE(fs::exists(root / target)) << document << ": " << at->str();
