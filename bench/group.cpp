@@ -92,14 +92,10 @@ void Group::measure_apart() {
 }
 
 results::Record Group::died(Task const& task, Ended const& ended) const {
-  results::Record record;
-  record.cell = task.id;
-  record.build = build_id();
-  record.of = task.prepared.cell;
-  record.status = ended.late ? results::Status::timeout : results::Status::crashed;
-  record.reason = ended.late ? fmt::format("killed: no step ended within {:g} s of wall time", around_.options.timeout)
-                             : "its process ended: " + ended.died;
-  return record;
+  if (ended.late)
+    return unmeasured(task.prepared, build_id(), results::Status::timeout,
+                      fmt::format("killed: no step ended within {:g} s of wall time", around_.options.timeout));
+  return unmeasured(task.prepared, build_id(), results::Status::crashed, "its process ended: " + ended.died);
 }
 
 void Group::time_all() {

@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "bench/measure.hpp"
+
 namespace polhode::bench {
 namespace {
 

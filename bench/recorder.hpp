@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "bench/cell.hpp"
+#include "bench/measure.hpp"
 
 namespace polhode::bench {
 

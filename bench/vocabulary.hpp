@@ -47,6 +47,9 @@ struct Vocabulary {
   IntegratorWord const& integrator(std::string_view name) const;
 };
 
+/// The words of both catalogues, in catalogue order: from words.cpp.
+Vocabulary const& vocabulary();
+
 /// Brings a variant selection ("g2,case1") into canonical form: one word per group in the order of the groups, defaults
 /// written out, groups whose choice is "" left out. Throws UsageError for unknown words and for two of one group.
 std::string canonical_variant(ProblemWord const& problem, std::string_view selection);
