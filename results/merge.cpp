@@ -3,11 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <fstream>
-#include <iterator>
 #include <map>
-#include <optional>
 #include <set>
 #include <system_error>
 
@@ -27,41 +23,72 @@ struct Part {
 /// A cell and a build.
 using Key = std::pair<std::string, std::string>;
 
-std::vector<fs::path> record_files(fs::path const& folder) {
-  std::error_code error;
-  std::vector<fs::path> files;
-  for (fs::directory_entry const& entry : fs::directory_iterator(folder, error)) {
-    if (entry.path().extension() == ".jsonl" && !entry.is_directory()) files.push_back(entry.path());
-  }
-  if (error) throw StoreError(fmt::format("{}: cannot be read: {}", folder.string(), error.message()));
-  std::ranges::sort(files);
-  return files;
-}
+constexpr char const* suite_file = "suite.toml";
 
-std::optional<std::string> suite_of(fs::path const& folder) {
-  fs::path const file = folder / "suite.toml";
-  if (!fs::exists(file)) return {};
-  std::ifstream in(file, std::ios::binary);
-  std::string text(std::istreambuf_iterator<char>(in), {});
-  if (!in) throw StoreError(fmt::format("{}: cannot be read", file.string()));
-  return text;
-}
-
-/// The one suite that all folders are of; none if none has one.
-std::optional<std::string> common_suite(std::vector<fs::path> const& folders) {
-  std::optional<std::string> common;
+/// A file beside the records.
+struct Copy {
+  std::string text;
   fs::path from;
-  for (fs::path const& folder : folders) {
-    auto const suite = suite_of(folder);
-    if (!suite) continue;
-    if (common && *common != *suite) {
-      throw StoreError(fmt::format("{}: another suite than {}; merge results of one suite",
-                                   (folder / "suite.toml").string(), (from / "suite.toml").string()));
-    }
-    common = suite;
-    from = folder;
+};
+
+/// Such files by their names.
+using Copies = std::map<std::string, Copy>;
+
+/// The suite of the first folder that has one; empty if none has.
+std::string suite_of(std::vector<fs::path> const& folders) {
+  auto const as_it_is = [](std::string text) { return text; };
+  for (fs::path const& folder : folders)
+    if (auto suite = read_if_there(folder / suite_file, as_it_is)) return *suite;
+  return {};
+}
+
+/// What stands in a folder; locks, drafts, records and the catalogue, which is joined, are passed over.
+std::vector<fs::path> others_in(fs::path const& folder) try {
+  std::vector<fs::path> others;
+  for (fs::directory_entry const& entry : fs::directory_iterator(folder)) {
+    std::string const name = entry.path().filename().string();
+    bool const copied = name == suite_file || name == benchmarks_file || name == ensemble_file;
+    if (copied || !is_own_name(name)) others.push_back(entry.path());
   }
-  return common;
+  std::ranges::sort(others);
+  return others;
+} catch (fs::filesystem_error const& error) {
+  throw StoreError(fmt::format("{}: cannot be read: {}", folder.string(), error.code().message()));
+}
+
+/// Does the suite name such a file, in a string, by itself or at the end of a path?
+bool names_file(std::string_view suite, std::string_view name) {
+  constexpr std::string_view before = "\"'/", after = "\"'";
+  for (std::size_t at = suite.find(name); at < suite.size(); at = suite.find(name, at + 1)) {
+    std::size_t const end = at + name.size();
+    bool const whole = at > 0 && before.find(suite[at - 1]) != before.npos && end < suite.size() &&
+                       after.find(suite[end]) != after.npos;
+    if (whole) return true;
+  }
+  return false;
+}
+
+/// Adds what a folder has beside its records: the suite and its graphs, which all folders share, and measurements, of
+/// which the last count. What is none of these, or does not count, is left.
+void collect(fs::path const& folder, std::string const& suite, Copies& copies, std::vector<fs::path>& left) {
+  for (fs::path const& file : others_in(folder)) {
+    std::string const name = file.filename().string();
+    bool const measured = name == benchmarks_file || name == ensemble_file;
+    // The suite cannot be read without the graphs that it names.
+    bool const shared = name == suite_file || (!fs::is_directory(file) && names_file(suite, name));
+    if (!measured && !shared) {
+      left.push_back(file);
+      continue;
+    }
+    Copy copy{read_whole(file), file};
+    auto const [place, is_new] = copies.try_emplace(name, copy);
+    if (is_new || place->second.text == copy.text) continue;
+    if (shared)
+      throw StoreError(fmt::format("{}: another {} than {}; merge results of one suite", file.string(),
+                                   name == suite_file ? "suite" : "graph", place->second.from.string()));
+    left.push_back(place->second.from);
+    place->second = std::move(copy);
+  }
 }
 
 /// The place of the run that counts: the last of each cell and build.
@@ -91,45 +118,27 @@ void write_part(fs::path const& file, Part const& part, std::set<std::string> co
   }
 }
 
-void prepare_folder(fs::path const& out, std::optional<std::string> const& suite) {
-  std::error_code error;
-  fs::create_directories(out, error);
-  if (error) throw StoreError(fmt::format("{}: cannot be made: {}", out.string(), error.message()));
-  if (!suite) return;
-  errno = 0;
-  std::ofstream file(out / "suite.toml", std::ios::binary);
-  file << *suite;
-  file.close();
-  if (!file) {
-    throw StoreError(fmt::format("{}: cannot be written: {}", (out / "suite.toml").string(),
-                                 std::generic_category().message(errno)));
-  }
-}
-
-/// The graph files that the suite names stand beside it, and it cannot be read without them.
-void copy_graphs(fs::path const& out, std::vector<fs::path> const& folders, std::string const& suite) {
-  try {
-    for (fs::path const& folder : folders)
-      for (fs::directory_entry const& entry : fs::directory_iterator(folder)) {
-        std::string const name = entry.path().filename().string();
-        bool const named = entry.is_regular_file() && !is_own_name(name) && suite.find(name) != std::string::npos;
-        if (named) fs::copy_file(entry.path(), out / name, fs::copy_options::skip_existing);
-      }
-  } catch (fs::filesystem_error const& error) {
-    throw StoreError(fmt::format("{}: cannot be copied: {}", error.path1().string(), error.code().message()));
-  }
+/// A folder without records may hold what would be written over.
+void refuse_to_replace(fs::path const& out, Copies const& copies) {
+  for (auto const& [name, copy] : copies)
+    read_if_there(out / name, [&](std::string const& text) {
+      if (text != copy.text) throw std::invalid_argument("is there already, and another; give a new folder");
+      return true;
+    });
 }
 
 }  // namespace
 
 MergeSummary merge(fs::path const& out, std::vector<fs::path> const& folders) {
-  bool const taken = fs::is_directory(out) && !record_files(out).empty();
+  bool const taken = fs::exists(out) && !record_files(out).empty();
   if (taken) throw StoreError(fmt::format("{}: holds records already; give a new folder", out.string()));
   MergeSummary summary;
   std::vector<Part> parts;
   for (fs::path const& folder : folders) {
     if (!fs::is_directory(folder)) throw StoreError(fmt::format("{}: no such folder", folder.string()));
     ++summary.folders;
+    static_cast<void>(read_benchmarks(folder));  // damage is refused, not copied
+    static_cast<void>(read_ensemble(folder));
     for (fs::path const& file : record_files(folder)) {
       Contents contents = read(file);
       summary.repeated += contents.repeated;
@@ -137,12 +146,17 @@ MergeSummary merge(fs::path const& out, std::vector<fs::path> const& folders) {
       if (!killed_at_birth) parts.push_back({file.stem().string(), std::move(contents)});
     }
   }
-  auto const suite = common_suite(folders);
+  Copies copies;
+  std::string const suite = suite_of(folders);
+  for (fs::path const& folder : folders) collect(folder, suite, copies, summary.left);
+  refuse_to_replace(out, copies);
   auto const catalogue = merged_catalogues(folders);
   auto const last = last_runs(parts);
 
-  prepare_folder(out, suite);
-  if (suite) copy_graphs(out, folders, *suite);
+  std::error_code error;
+  fs::create_directories(out, error);
+  if (error) throw StoreError(fmt::format("{}: cannot be made: {}", out.string(), error.message()));
+  for (auto const& [name, copy] : copies) write_whole(out / name, copy.text);
   if (catalogue) write_catalogue(out, *catalogue);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     Contents const& contents = parts[i].contents;

@@ -143,18 +143,6 @@ class Collector {
   std::vector<Begin> open_;
 };
 
-/// The path itself, or the *.jsonl of a folder by name.
-std::vector<fs::path> files_of(fs::path const& path) {
-  if (!fs::exists(path)) throw StoreError(fmt::format("{}: no such file or folder", path.string()));
-  if (!fs::is_directory(path)) return {path};
-  std::vector<fs::path> files;
-  for (fs::directory_entry const& entry : fs::directory_iterator(path)) {
-    if (entry.path().extension() == ".jsonl" && !entry.is_directory()) files.push_back(entry.path());
-  }
-  std::ranges::sort(files);
-  return files;
-}
-
 // --- Writing ---------------------------------------------------------------------------------------------------------
 
 /// Text of any encoding is written: what is not UTF-8 in a reason from outside must not cost the run.
@@ -208,20 +196,29 @@ off_t size_of(std::FILE* out, fs::path const& file) {
 
 }  // namespace
 
+std::vector<fs::path> record_files(fs::path const& path) try {
+  if (!fs::exists(path)) throw StoreError(fmt::format("{}: no such file or folder", path.string()));
+  if (!fs::is_directory(path)) return {path};
+  std::vector<fs::path> files;
+  for (fs::directory_entry const& entry : fs::directory_iterator(path)) {
+    if (entry.path().extension() == ".jsonl" && !entry.is_directory()) files.push_back(entry.path());
+  }
+  std::ranges::sort(files);
+  return files;
+} catch (fs::filesystem_error const& error) {
+  throw StoreError(fmt::format("{}: cannot be read: {}", path.string(), error.code().message()));
+}
+
 Contents read(fs::path const& path) {
   Collector collector;
-  try {
-    for (fs::path const& file : files_of(path)) {
-      for_each_line(file, [&](std::string const& line, std::size_t number) {
-        try {
-          collector.take(line, number == 1);
-        } catch (std::invalid_argument const& error) {
-          throw StoreError(fmt::format("{}:{}: {}", file.string(), number, error.what()));
-        }
-      });
-    }
-  } catch (fs::filesystem_error const& error) {
-    throw StoreError(fmt::format("{}: cannot read: {}", path.string(), error.code().message()));
+  for (fs::path const& file : record_files(path)) {
+    for_each_line(file, [&](std::string const& line, std::size_t number) {
+      try {
+        collector.take(line, number == 1);
+      } catch (std::invalid_argument const& error) {
+        throw StoreError(fmt::format("{}:{}: {}", file.string(), number, error.what()));
+      }
+    });
   }
   Contents contents = collector.finish();
   contents.catalogue = read_catalogue(path);
@@ -231,9 +228,12 @@ Contents read(fs::path const& path) {
 }
 
 void remove_records(fs::path const& folder) {
-  auto const files = files_of(folder);
+  std::vector<fs::path> const files = record_files(folder);
   for (fs::path const& file : files) complete_bytes(file);
-  for (fs::path const& file : files) fs::remove(file);
+  for (fs::path const& file : files) {
+    errno = 0;
+    if (::unlink(file.c_str()) != 0) io_error(file, "remove");
+  }
 }
 
 bool is_own_name(std::string_view name) {

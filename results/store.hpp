@@ -38,6 +38,9 @@ struct Contents {
 /// Throws StoreError.
 Contents read(std::filesystem::path const& path);
 
+/// The *.jsonl of a folder, in the order of their names; or `path` itself (a file). Throws StoreError.
+std::vector<std::filesystem::path> record_files(std::filesystem::path const& path);
+
 /// Removes the record files of a folder, damaged ones too. Throws StoreError, and removes nothing, if a *.jsonl there
 /// does not begin as ours do: it is somebody else's.
 void remove_records(std::filesystem::path const& folder);
