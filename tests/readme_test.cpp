@@ -1,5 +1,6 @@
-// The READMEs against what they speak of: examples are the files of tests/consumer that the consumer tests compile,
-// tables list every file of their folder, links lead somewhere, and the lines for a clone stand where they say.
+// The documents against what they speak of: examples are the files of tests/consumer that the consumer tests compile,
+// tables list every file of their folder, links lead somewhere, the lines for a clone stand where they say, and the
+// version is the project's.
 #include <gmock/gmock.h>
 
 #include <cctype>
@@ -65,6 +66,15 @@ TEST(Readme, TablesListEveryHeaderOfTheirFolder) {
     }
     EXPECT_GT(headers, 30) << folder;
   }
+}
+
+TEST(Readme, VersionIsThatOfTheProject) {
+  std::string const project = contents("CMakeLists.txt");
+  std::smatch version;
+  ASSERT_TRUE(std::regex_search(project, version, std::regex(R"(project\(polhode VERSION ((\d+\.\d+)\.\d+))")));
+  EXPECT_THAT(contents("CITATION.cff"), HasSubstr("\nversion: " + version.str(1) + "\n"));
+  EXPECT_THAT(contents("CHANGELOG.md"), HasSubstr("\n## " + version.str(1) + " "));
+  EXPECT_THAT(contents("README.md"), HasSubstr("find_package(polhode " + version.str(2) + " REQUIRED)"));
 }
 
 // ---- Links ----------------------------------------------------------------------------------------------------------
