@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "results/record.hpp"
@@ -74,11 +73,7 @@ Json contents_of(Certificate const& c) {
 void save(Certificate const& certificate, std::filesystem::path const& folder) {
   Json json = contents_of(certificate);
   json["hash"] = results::hash_of(json.dump());
-  std::filesystem::create_directories(folder);
-  std::filesystem::path const file = folder / (certificate.id + ".json");
-  std::ofstream out(file);
-  out << json.dump(1) << '\n';
-  if (!out.flush()) throw ReferenceError(file.string() + ": cannot be written");
+  results::write_whole(folder / (certificate.id + ".json"), json.dump(1) + '\n');
 }
 
 Certificate load(std::filesystem::path const& file) {

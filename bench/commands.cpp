@@ -1,6 +1,17 @@
 #include "bench/commands.hpp"
 
+#include <cstdio>
+
+#include "results/whole_file.hpp"
+
 namespace polhode::bench {
+
+void write_out(std::string const& file, std::string_view text) {
+  if (file.empty())
+    std::fwrite(text.data(), 1, text.size(), stdout);
+  else
+    results::write_text(file, text);
+}
 
 void add_commands(CLI::App& app, int& code, Faces const& faces) {
   add_list(app);

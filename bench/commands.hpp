@@ -36,6 +36,10 @@ struct Faces {
   WriteComparison comparison;
 };
 
+/// To the file that the user named, or to standard output if none: main() sees whether all of that went out. Throws
+/// StoreError.
+void write_out(std::string const& file, std::string_view text);
+
 /// Adds the verbs to `app`. A verb that ran writes its exit code; mistakes are thrown.
 void add_commands(CLI::App& app, int& code, Faces const& faces);
 /// The verb list: what there is.

@@ -21,6 +21,7 @@
 #include "bench/provenance.hpp"
 #include "results/file_name.hpp"
 #include "results/store.hpp"
+#include "results/whole_file.hpp"
 
 namespace polhode::bench {
 namespace {
@@ -41,12 +42,7 @@ struct Checked {
 };
 
 void write_file(std::string const& file, std::string const& text) {
-  if (file.empty()) return;
-  errno = 0;
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw results::StoreError(fmt::format("{}: cannot be written: {}", file, std::strerror(errno)));
+  if (!file.empty()) results::write_text(file, text);
 }
 
 /// Where GitHub runs this: failures as annotations, and the summary of the step. The file belongs to the whole step, so

@@ -4,11 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -17,6 +13,7 @@
 #include "bench/messages.hpp"
 #include "results/compare.hpp"
 #include "results/store.hpp"
+#include "results/whole_file.hpp"
 
 namespace polhode::bench {
 namespace {
@@ -69,14 +66,6 @@ std::string text_of(results::Comparison const& comparison, std::string const& fo
   return write(comparison, form, outlet);
 }
 
-void write_file(std::string const& file, std::string const& text) {
-  errno = 0;
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw results::StoreError(fmt::format("{}: cannot be written: {}", file, std::strerror(errno)));
-}
-
 results::Contents read_records(std::string const& path) {
   results::Contents contents = results::read(path);
   if (contents.records.empty())
@@ -91,7 +80,7 @@ int compare(CompareOptions const& options, WriteComparison const& write) {
   if (comparison.common == 0)
     throw NothingSelected(fmt::format("{} and {} have no cell in common", options.a, options.b));
   auto const put = [&](std::string const& file, std::string const& format) {
-    write_file(file, text_of(comparison, format, write, {}));
+    results::write_text(file, text_of(comparison, format, write, {}));
   };
   for (std::string const& file : options.files) put(file, options.format.empty() ? format_of(file) : options.format);
   if (!options.html.empty()) put(options.html, "html");
@@ -99,9 +88,8 @@ int compare(CompareOptions const& options, WriteComparison const& write) {
   bool const to_files = !options.files.empty() || !options.html.empty() || !options.json.empty();
   if (!to_files) {
     std::string const usual = ::isatty(STDOUT_FILENO) != 0 ? "text" : "markdown";
-    std::string const text =
-        text_of(comparison, options.format.empty() ? usual : options.format, write, results::outlet_of(STDOUT_FILENO));
-    std::fwrite(text.data(), 1, text.size(), stdout);
+    std::string const& format = options.format.empty() ? usual : options.format;
+    write_out("", text_of(comparison, format, write, results::outlet_of(STDOUT_FILENO)));
   }
   return options.fail && comparison.regressed() ? exit_expectation_failed : exit_ok;
 }

@@ -18,19 +18,6 @@
 namespace polhode::bench {
 namespace {
 
-/// To a file, or to standard output, of which main() sees whether all of it went out.
-void write_out(std::string const& file, std::string const& text) {
-  if (file.empty()) {
-    std::fwrite(text.data(), 1, text.size(), stdout);
-    return;
-  }
-  errno = 0;
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw results::StoreError(fmt::format("{}: cannot be written: {}", file, std::strerror(errno)));
-}
-
 void export_records(std::string const& folder, std::string const& format, std::string const& out) {
   std::vector<std::string> const formats{"csv", "benchmark-json"};
   if (std::ranges::find(formats, format) == formats.end()) throw UsageError(unknown("format", format, formats));
@@ -47,6 +34,16 @@ void export_records(std::string const& folder, std::string const& format, std::s
                contents.records.size());
 }
 
+/// What a merge left where it is.
+void tell_of(std::vector<std::filesystem::path> const& left) {
+  constexpr std::size_t most = 8;
+  if (left.empty()) return;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(left.size(), most); ++i) text += (i > 0 ? ", " : "") + left[i].string();
+  if (left.size() > most) text += fmt::format(" and {} more", left.size() - most);
+  fmt::print(stderr, "polhode: left where they are: {}\n", text);
+}
+
 void add_merge(CLI::App& app) {
   auto const out = std::make_shared<std::string>();
   auto const folders = std::make_shared<std::vector<std::string>>();
@@ -57,6 +54,7 @@ void add_merge(CLI::App& app) {
     results::MergeSummary const summary = results::merge(*out, {folders->begin(), folders->end()});
     fmt::print("{}: {} records from {} files of {} folders; {} repeated runs left out\n", *out, summary.records,
                summary.files, summary.folders, summary.repeated);
+    tell_of(summary.left);
   });
 }
 

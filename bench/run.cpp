@@ -4,10 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <chrono>
-#include <cstring>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <regex>
@@ -24,6 +21,7 @@
 #include "results/file_name.hpp"
 #include "results/folder_lock.hpp"
 #include "results/store.hpp"
+#include "results/whole_file.hpp"
 
 namespace polhode::bench {
 namespace {
@@ -91,8 +89,8 @@ std::set<std::string> finished(std::filesystem::path const& out, bool retry_fail
   return done;
 }
 
-/// Where a file stands in the repository in which the run is started, or, without one, below the folder where it is; empty
-/// for one outside. There a CI server marks what `check` finds.
+/// Where a file stands in the repository in which the run is started, or, without one, below the folder where it is;
+/// empty for one outside. There a CI server marks what `check` finds.
 std::string path_in_repository(std::filesystem::path const& file) {
   std::error_code none;
   std::filesystem::path const here = std::filesystem::current_path(none);
@@ -130,14 +128,6 @@ void say_what_would_run(std::vector<Task> const& tasks, Timing const& timing, in
   }
   int const seconds = int(std::lround(expected_time(tasks, timing, processors)));
   fmt::print("{} cells, about {} min {} s\n", tasks.size(), seconds / 60, seconds % 60);
-}
-
-void write_suite(std::filesystem::path const& file, std::string const& text) {
-  errno = 0;
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw results::StoreError(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
 }
 
 /// What users should know of their choices, each once.
@@ -218,7 +208,7 @@ class SuiteRun {
     std::string left;
     for (Task const& task : tasks_) left += done.contains(task.id) ? '0' : '1';
     if (left.find('1') != std::string::npos) {
-      write_suite(out / "suite.toml", suite_.text);
+      results::write_text(out / "suite.toml", suite_.text);
       results::write_catalogue(out, catalogue_text());
       copy_files_of_suite();
     }

@@ -64,16 +64,20 @@ std::string read_whole(fs::path const& file, std::uintmax_t most_bytes) {
   return text;
 }
 
+void write_text(fs::path const& file, std::string_view text) {
+  errno = 0;
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) throw cannot("written", file, {errno, std::generic_category()});
+}
+
 void write_whole(fs::path const& file, std::string_view text) {
   std::error_code error;
   if (file.has_parent_path()) fs::create_directories(file.parent_path(), error);
   if (error) throw cannot("written", file, error);
   fs::path const draft = fmt::format("{}.{}", file.string(), ::getpid());
-  errno = 0;
-  std::ofstream out(draft, std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) throw cannot("written", draft, {errno, std::generic_category()});
+  write_text(draft, text);
   fs::rename(draft, file, error);
   if (error) throw cannot("written", file, error);
 }

@@ -39,6 +39,9 @@ auto read_if_there(std::filesystem::path const& file, Parse&& parse) -> std::opt
   }
 }
 
+/// Writes to `file` as it stands, which may be a device: what a user named. Throws StoreError.
+void write_text(std::filesystem::path const& file, std::string_view text);
+
 /// Writes a draft beside `file` and renames it; makes the folder. Throws StoreError; `file` is then as it was.
 void write_whole(std::filesystem::path const& file, std::string_view text);
 
