@@ -2,13 +2,12 @@
 #include "results/catalogue.hpp"
 
 #include <gmock/gmock.h>
-#include <unistd.h>
 
-#include <fstream>
 #include <string>
 
 #include "results/merge.hpp"
 #include "results/store.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace polhode::results {
 namespace {
@@ -25,21 +24,14 @@ constexpr auto text = R"([
 
 class CatalogueFile : public testing::Test {
  protected:
-  CatalogueFile()
-      : root(fs::path(testing::TempDir()) / ("polhode catalogue " + std::to_string(::getpid()) +
-                                             testing::UnitTest::GetInstance()->current_test_info()->name())) {
-    fs::remove_all(root);
-    fs::create_directories(root);
-  }
-  ~CatalogueFile() override { fs::remove_all(root); }
-
   fs::path folder(std::string const& name, std::string const& content) const {
     fs::create_directories(root / name);
     write_catalogue(root / name, content);
     return root / name;
   }
 
-  fs::path root;
+  test::TemporaryFolder top;
+  fs::path const root = top.path;
 };
 
 TEST_F(CatalogueFile, IsReadWithTheRecords) {

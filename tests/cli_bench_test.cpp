@@ -1,14 +1,13 @@
 /// polhode-bench as a script meets it.
 #include <gtest/gtest.h>
 
-#include <unistd.h>
-
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "results/benchmarks.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace polhode {
 namespace {
@@ -49,8 +48,8 @@ TEST(CliBench, EveryRepetitionIsPrintedIfAskedFor) {
   EXPECT_EQ(count(all), count(few) + 2 * 2) << "two benchmarks, two repetitions";
 }
 TEST(CliBench, TheFolderGetsWhatWasMeasured) {
-  std::filesystem::path const folder =
-      std::filesystem::path(testing::TempDir()) / ("bench out-" + std::to_string(::getpid()));
+  test::TemporaryFolder const top;
+  std::filesystem::path const folder = top.path / "bench out";
   Printed const printed = bench("--out '" + folder.string() + "'" + brief + "^twin/");
   ASSERT_EQ(printed.code, 0);
   results::Benchmarks const read = results::read_benchmarks(folder);
@@ -61,7 +60,6 @@ TEST(CliBench, TheFolderGetsWhatWasMeasured) {
   EXPECT_EQ(generic->time.repetitions, 2);
   EXPECT_EQ(generic->time.samples.size(), 2U);
   EXPECT_NEAR(generic->counters.at("per_step"), generic->time.median / 5000, 1e-6 * generic->time.median);
-  std::filesystem::remove_all(folder);
 }
 TEST(CliBench, AFolderThatCannotBeIsAnError) {
   EXPECT_EQ(bench("--out").code, 2);

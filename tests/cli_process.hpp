@@ -13,54 +13,21 @@
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <map>
 #include <stdexcept>
 #include <string>
 #include <system_error>
 #include <thread>
 #include <vector>
 
+#include "tests/temporary_folder.hpp"
+
 namespace polhode::cli {
 
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
 
-inline std::string text_of(fs::path const& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-/// A new, empty folder that goes with the object.
-class Folder {
- public:
-  Folder() {
-    std::string name = fs::temp_directory_path() / "polhode_cli_XXXXXX";
-    if (::mkdtemp(name.data()) == nullptr) throw std::system_error(errno, std::generic_category(), name);
-    path = name;
-  }
-  ~Folder() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-  Folder(Folder const&) = delete;
-  Folder& operator=(Folder const&) = delete;
-
-  void write(fs::path const& name, std::string const& text) const {
-    fs::create_directories((path / name).parent_path());
-    std::ofstream(path / name, std::ios::binary) << text;
-  }
-  /// Every file and folder below, with what the files hold.
-  std::map<std::string, std::string> contents() const {
-    std::map<std::string, std::string> all;
-    for (auto const& entry : fs::recursive_directory_iterator(path))
-      all[fs::relative(entry.path(), path)] = entry.is_regular_file() ? text_of(entry.path()) : "";
-    return all;
-  }
-
-  fs::path path;
-};
+using Folder = test::TemporaryFolder;
+using test::text_of;
 
 struct Result {
   int code = -1;  ///< the exit code; 128 + n when a signal n ended it

@@ -4,9 +4,10 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <fstream>
 #include <map>
 #include <nlohmann/json.hpp>
+
+#include "tests/temporary_folder.hpp"
 
 namespace polhode::bench {
 namespace {
@@ -14,8 +15,6 @@ namespace {
 /// A folder with proc/ and sys/ of a quiet machine.
 struct Machine : testing::Test {
   Machine() {
-    std::string name = std::filesystem::temp_directory_path() / "polhode_machine_XXXXXX";
-    if (::mkdtemp(name.data()) != nullptr) root = name;
     write("proc/loadavg", "0.05 0.10 0.20 1/200 4711\n");
     write("proc/cpuinfo", "processor\t: 0\nflags\t\t: fpu sse2 avx2\n");
     write("proc/meminfo", "MemTotal:       33554432 kB\nMemAvailable:   16777216 kB\n");
@@ -26,11 +25,7 @@ struct Machine : testing::Test {
     write("sys/fs/cgroup/cpu.max", "max 100000\n");
     write("sys/fs/cgroup/cpu.stat", "usage_usec 1\nnr_throttled 0\n");
   }
-  ~Machine() override { std::filesystem::remove_all(root); }
-  void write(std::string const& name, std::string const& text) const {
-    std::filesystem::create_directories((root / name).parent_path());
-    std::ofstream(root / name) << text;
-  }
+  void write(std::string const& name, std::string const& text) const { folder.write(name, text); }
   /// Troubles by the name of the finding; that there is one processor alone is this machine's, not the folder's.
   std::map<std::string, std::string> troubles() const {
     std::map<std::string, std::string> found;
@@ -38,7 +33,8 @@ struct Machine : testing::Test {
       if (!finding.trouble.empty() && finding.name != "processors") found[finding.name] = finding.value;
     return found;
   }
-  std::filesystem::path root;
+  polhode::test::TemporaryFolder folder;
+  std::filesystem::path const root = folder.path;
 };
 
 using testing::ElementsAre;

@@ -3,14 +3,13 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <fstream>
-#include <iterator>
 #include <limits>
 
 #include "results/store.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace polhode::results {
 namespace {
@@ -119,21 +118,10 @@ TEST(Golden, WhatAgreesStaysAsItWasCommitted) {
 /// Each test has a folder of its own.
 class GoldenFile : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = testing::TempDir() + "polhode_golden_XXXXXX";
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    folder = name;
-    file = folder / "inner" / "test.jsonl";
-  }
-  void TearDown() override { fs::remove_all(folder); }
-  std::string text() const {
-    std::ifstream in(file);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
+  std::string text() const { return polhode::test::text_of(file); }
   /// The message that reading this text gives.
   std::string complaint(std::string const& damaged) const {
-    fs::create_directories(file.parent_path());
-    std::ofstream(file, std::ios::binary) << damaged;
+    top.write("inner/test.jsonl", damaged);
     try {
       read_golden(file);
     } catch (StoreError const& error) {
@@ -143,7 +131,8 @@ class GoldenFile : public testing::Test {
     return "nothing was thrown";
   }
 
-  fs::path folder, file;
+  polhode::test::TemporaryFolder top;
+  fs::path const folder = top.path, file = folder / "inner" / "test.jsonl";
 };
 
 TEST_F(GoldenFile, ReadsBackWhatWasWritten) {

@@ -15,6 +15,7 @@
 #include "results/file_name.hpp"
 #include "results/folder_lock.hpp"
 #include "results/store.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace polhode {
 namespace {
@@ -114,12 +115,8 @@ TEST(Isolate, TroubleInThisProcessKillsTheChildren) {
 // ---- One writer -----------------------------------------------------------------------------------------------------
 
 struct LockedFolder : testing::Test {
-  LockedFolder() {
-    std::string name = std::filesystem::temp_directory_path() / "polhode_lock_XXXXXX";
-    if (::mkdtemp(name.data()) != nullptr) path = name;
-  }
-  ~LockedFolder() override { std::filesystem::remove_all(path); }
-  std::filesystem::path path;
+  polhode::test::TemporaryFolder folder;
+  std::filesystem::path const path = folder.path;
 };
 
 TEST_F(LockedFolder, HasOneWriter) {

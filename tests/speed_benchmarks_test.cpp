@@ -1,13 +1,13 @@
 // What polhode-bench leaves in a result folder: written, read back, and refused when it is damaged.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 #include <string>
 
 #include "results/store.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace polhode::results {
 namespace {
@@ -15,11 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-struct Folder {
-  fs::path path = fs::path(testing::TempDir()) / ("benchmarks-" + std::to_string(::getpid()));
-  Folder() { fs::remove_all(path); }
-  ~Folder() { fs::remove_all(path); }
-};
+using Folder = polhode::test::TemporaryFolder;
 
 Benchmarks two() {
   Benchmarks benchmarks;
@@ -72,7 +68,6 @@ TEST(Benchmarks, ReadAsTheyWereWritten) {
 
 TEST(Benchmarks, AFolderMayHaveNone) {
   Folder const folder;
-  fs::create_directories(folder.path);
   EXPECT_TRUE(read_benchmarks(folder.path).all.empty());
   EXPECT_TRUE(read(folder.path).benchmarks.all.empty());
 }

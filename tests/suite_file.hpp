@@ -1,33 +1,19 @@
 #pragma once
 /// Suites for tests: written to a temporary file and read with the small vocabulary.
-#include <unistd.h>
-
-#include <atomic>
 #include <filesystem>
-#include <fstream>
 #include <string>
 
 #include "bench/suite.hpp"
 #include "tests/small_vocabulary.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace polhode::bench::test {
 
-/// A file that is there as long as the object is.
-class TemporaryFile {
- public:
-  explicit TemporaryFile(std::string const& text) {
-    static std::atomic<int> count = 0;
-    auto const name = "polhode_suite_" + std::to_string(getpid()) + "_" + std::to_string(count++) + ".toml";
-    path = std::filesystem::temp_directory_path() / name;
-    std::ofstream(path, std::ios::binary) << text;
-  }
-  ~TemporaryFile() {
-    std::error_code ignored;
-    std::filesystem::remove(path, ignored);
-  }
-  TemporaryFile(TemporaryFile const&) = delete;
-  TemporaryFile& operator=(TemporaryFile const&) = delete;
+/// A suite's file that goes with the object.
+struct TemporaryFile {
+  explicit TemporaryFile(std::string const& text) : path(folder.write("suite.toml", text)) {}
 
+  polhode::test::TemporaryFolder folder;
   std::filesystem::path path;
 };
 

@@ -2,12 +2,10 @@
 #include "bench/suite_graphs.hpp"
 
 #include <gmock/gmock.h>
-#include <unistd.h>
-
-#include <fstream>
 
 #include "problems/parameters.hpp"
 #include "results/store.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace polhode::bench {
 namespace {
@@ -25,11 +23,7 @@ class SuiteGraphs : public testing::Test {
     write("suites/a/star.txt", "1 3 1\n");
     write("ring.txt", "1 2 4\n");
   }
-  ~SuiteGraphs() override { fs::remove_all(top_); }
-  void write(fs::path const& name, std::string const& text) const {
-    fs::create_directories((top_ / name).parent_path());
-    std::ofstream(top_ / name) << text;
-  }
+  void write(fs::path const& name, std::string const& text) const { folder_.write(name, text); }
   /// What is said of a graph of that name.
   std::string complaint(std::string const& written) {
     try {
@@ -40,7 +34,8 @@ class SuiteGraphs : public testing::Test {
     return "";
   }
 
-  fs::path top_ = fs::temp_directory_path() / ("polhode_suite_graphs_" + std::to_string(::getpid()));
+  polhode::test::TemporaryFolder folder_;
+  fs::path const top_ = folder_.path;
   GraphFiles graphs_{top_ / "suites"};
 };
 
