@@ -44,6 +44,7 @@ struct Dual {
   Dual& operator+=(Dual const& y) { return *this = *this + y; }
   friend bool operator<(Dual const& x, Dual const& y) { return x.value < y.value; }
   friend bool operator==(Dual const& x, Dual const& y) { return x.value == y.value; }
+  friend bool is_nothing(Dual const& x) { return x.value == 0 && x.slope == std::array<double, N>{}; }
 
   friend Dual sqrt(Dual const& x) {
     double const r = std::sqrt(x.value);

@@ -68,6 +68,7 @@ struct Jet {
   Jet& operator+=(Jet const& y) { return *this = *this + y; }
   friend bool operator<(Jet const& x, Jet const& y) { return x[0] < y[0]; }
   friend bool operator==(Jet const& x, Jet const& y) { return x[0] == y[0]; }
+  friend bool is_nothing(Jet const& x) { return x.degree == 0 && x[0] == R(0.0); }
 
   friend Jet sqrt(Jet const& x) {
     return grown(x.degree, [&](Jet const& r, int k) {

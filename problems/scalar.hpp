@@ -132,6 +132,11 @@ S nearest_whole(S const& x) {
 POLHODE_INLINE constexpr bool all_of(bool truth) {
   return truth;
 }
+/// The constant 0: of a dual number or a power series no derivative and no later term either. So it stays what it is.
+template <class S>
+bool is_nothing(S const& x) {
+  return x == S(0.0);
+}
 /// Neither infinite nor NaN.
 template <class S>
 POLHODE_INLINE bool is_finite(S const& x) {
