@@ -1,13 +1,13 @@
 #pragma once
 /// A value and N directional derivatives: Jacobians of any problem, and the laws of a space, without differencing.
-/// Source: Griewank & Walther (2008), Evaluating Derivatives, ch. 3.
+/// Source: Griewank & Walther (2008), Evaluating Derivatives, ch. 3
 #include <array>
 
 #include "problems/scalar.hpp"
 
 namespace polhode {
 
-/// A number and its derivatives in N directions: for Jacobians. Source: Griewank & Walther (2008), ch. 3
+/// A number and its derivatives in N directions.
 template <int N>
 struct Dual {
   double value = 0;

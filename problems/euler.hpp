@@ -1,15 +1,15 @@
 #pragma once
 /// Euler angles, 3-2-1: yaw about z, then pitch about the new y, then roll about the new x. A foil: what many
-/// simulators use, with trigonometry in every evaluation and a singularity in the middle of the attitudes. Frames as in
-/// attitude.hpp: matrix(q) = Rz(yaw) Ry(pitch) Rx(roll) maps body to inertial components. Source: Schaub & Junkins,
-/// Analytical Mechanics of Space Systems, sec. 3.3
+/// simulators use, with trigonometry in every evaluation and a singularity in the middle of the attitudes.
+/// Frames as in attitude.hpp: matrix(q) = Rz(yaw) Ry(pitch) Rx(roll) maps body to inertial components.
+/// Source: Schaub & Junkins, Analytical Mechanics of Space Systems, sec. 3.3
 #include "problems/space.hpp"
 
 namespace polhode {
 
 /// Formulation `euler`: (roll, pitch, yaw) [rad] in this order, not wrapped: a body that keeps turning counts its
-/// turns. chart the angles, velocity omega [rad/s, body]; the kinematic matrix has 1 / cos(pitch) fails
-/// Status::diverged within 1e-6 rad of |pitch| = 90 deg, where roll and yaw turn about the same axis
+/// turns.   chart the angles, velocity omega [rad/s, body]; the kinematic matrix has 1 / cos(pitch)
+/// fails   Status::diverged within 1e-6 rad of |pitch| = 90 deg, where roll and yaw turn about the same axis
 template <class S>
 struct EulerAngles : Flat<S, Vec3<S>>, Unconstrained<S, Vec3<S>> {
   static constexpr std::string_view name = "euler";

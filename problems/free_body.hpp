@@ -1,7 +1,11 @@
 #pragma once
 /// Free asymmetric rigid body: no torque, so energy, |L| and the direction of L in space are invariants, and the
-/// solution is elliptic functions of time.   Source: Landau & Lifshitz, Mechanics, sec. 37; data of the tether paper's
-/// target state   attitude x omega [rad/s, body] params  inertia [kg m^2], q0, omega0 [rad/s]
+/// solution is elliptic functions of time.
+/// Source: Landau & Lifshitz, Mechanics, sec. 37; data of the tether paper's target
+///
+/// state   attitude x omega [rad/s, body]
+///
+/// params  inertia [kg m^2], q0, omega0 [rad/s, body]
 #include "problems/definition.hpp"
 #include "problems/rigid_body.hpp"
 

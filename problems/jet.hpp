@@ -1,7 +1,8 @@
 #pragma once
-/// A truncated power series in time. Evaluating a problem on jets gives the Taylor coefficients of its solution:
-/// x_{k+1} = f(x)_k / (k + 1).   Source: Jorba & Zou (2005), Experimental Mathematics 14, sec. 2.
-/// A jet of degree 0 is a constant; an operation has the higher degree of its operands, never above `most`.
+/// Truncated power series in time. Evaluating a problem on jets gives the Taylor coefficients of its solution:
+/// x_{k+1} = f(x)_k / (k + 1).
+/// Sources: Jorba & Zou (2005), Experimental Mathematics 14, sec. 2; Griewank & Walther (2008), Evaluating
+/// Derivatives, ch. 13 (the recurrences)
 #include <array>
 #include <vector>
 
@@ -9,7 +10,8 @@
 
 namespace polhode {
 
-/// A truncated power series in time, as a scalar: for Taylor methods. Source: Griewank & Walther (2008), ch. 13
+/// A series with coefficients R. One of degree 0 is a constant; an operation has the higher degree of its operands,
+/// never above `most`.
 template <class R, int most>
 struct Jet {
   std::array<R, most + 1> c{};  ///< coefficients of 1, t, t^2, ..., c[degree]

@@ -3,8 +3,7 @@
 /// of a method. A problem's source runs over them unchanged, if it selects where it could branch.
 ///
 /// Every operation is IEEE's in every lane, so lanes give what scalars give, to the last bit, whatever the registers;
-/// only sin and cos are
-/// polynomials of their own, within 1 ulp.
+/// only sin and cos are polynomials of their own, within 1 ulp.
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -45,9 +44,7 @@ struct LaneLayout {
   typedef T Part __attribute__((vector_size(in_part * sizeof(T))));
   typedef Integer MaskPart __attribute__((vector_size(in_part * sizeof(T))));
 };
-}  // namespace detail
 
-namespace detail {
 /// The result of f(its register, corresponding registers of `of`): by reference, for the ABI of vectors depends on
 /// flags.
 template <class R, class F, class... L>

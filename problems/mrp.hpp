@@ -2,9 +2,9 @@
 /// Modified Rodrigues parameters: three numbers for attitude, sigma = vec(q) / (1 + q.w) = tan(angle / 4) axis.
 /// They are the sphere of unit quaternions projected from q = -1: all of it but that one point, which lies at infinity.
 /// So sigma has no constraint to drift from, q and -q are two points sigma and -sigma / |sigma|^2, and a body that
-/// turns through 360 deg leaves the chart. `mrp` lets it; `mrp_shadow` changes over to the other point in time. Frames
-/// as in attitude.hpp: q maps body to inertial components, omega is the body rate [rad/s]. Source: Schaub & Junkins,
-/// Analytical Mechanics of Space Systems, sec. 3.6; sigma has no unit
+/// turns through 360 deg leaves the chart. `mrp` lets it; `mrp_shadow` changes over to the other point in time.
+/// Frames as in attitude.hpp: q maps body to inertial components, omega is the body rate [rad/s]; sigma has no unit.
+/// Source: Schaub & Junkins, Analytical Mechanics of Space Systems, sec. 3.6
 #include "problems/space.hpp"
 
 namespace polhode {

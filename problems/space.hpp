@@ -6,15 +6,17 @@
 ///   local(x, y)             the coordinates of y in the chart around x
 ///   rate(x, v)              the chart's velocity at its centre when x moves with velocity v
 ///   chart_rate(x, u, v)     the same at u:  dexp^-1_u v on a group | q omega / 2 | v
-///   retract_exactly(...)    retract by increments, the rounding error carried to the next step where addition allows
-///   it defect(x)               how far x is from the constraint: |q.q - 1| | Frobenius norm of R^T R - 1 | 0
+///   retract_exactly(...)    retract by increments; where that is addition, its rounding error is carried on
+///   defect(x)               how far x is from the constraint: |q.q - 1| | Frobenius norm of R^T R - 1 | 0
 ///   project(x)              the nearest point without defect; returns the distance that it moved
 ///
 /// Laws (space_laws.hpp checks them with dual numbers):
-///   1. retract(x, centre(x)) = x         2. local(x, retract(x, u)) = u        3. rate(x, v) = chart_rate(x,
-///   centre(x), v)
-///   4. moving u by chart_rate(x, u, v) in the chart around x is moving y = retract(x, u) by rate(y, v) in its own
-///   chart
+///
+///   1. retract(x, centre(x)) = x
+///   2. local(x, retract(x, u)) = u
+///   3. rate(x, v) = chart_rate(x, centre(x), v)
+///   4. moving u by chart_rate(x, u, v) in the chart around x moves y = retract(x, u) by rate(y, v) in its own chart
+///
 /// So Runge-Kutta in the chart around x is the classical one on a flat space, at no cost (u starts at x: the sum is the
 /// textbook's), and Munthe-Kaas on a group.   Source: Munthe-Kaas (1998), BIT 38, 92
 #include <string_view>
@@ -167,7 +169,7 @@ struct Rotations {
   static POLHODE_INLINE Chart chart_rate(X const&, Chart const& u, Velocity const& omega) { return dexpinv(u, omega); }
 };
 
-/// Formulation `s3`: unit quaternions as a group.   x exp(u / 2)
+/// Formulation `s3`: unit quaternions as a group.   q exp(u / 2)
 template <class S>
 struct S3 : Rotations<S, Quat<S>>, UnitQuaternion<S> {
   static constexpr std::string_view name = "s3";
@@ -291,7 +293,6 @@ using RigidBody = Product<A, Euclidean3<typename A::Scalar>>;
 /// The state of a rigid body that moves in space: RigidBody (first) and, in inertial axes, the position [m] and the
 /// velocity [m/s] of its centre of mass (second).
 template <Attitude A>
-using MovingBody =
-    Product<RigidBody<A>, Product<Euclidean3<typename A::Scalar>, Euclidean3<typename A::Scalar>>>;
+using MovingBody = Product<RigidBody<A>, Product<Euclidean3<typename A::Scalar>, Euclidean3<typename A::Scalar>>>;
 
 }  // namespace polhode

@@ -2,9 +2,8 @@
 /// A target captured by a tethered space robot is brought to rest with its grapple arm along the tether.
 /// Source: Xu, Wang, Deng, Li & Wei (2017), "Attitude control of targets captured by tethered space robots based on the
 ///         quaternion theory", Applied Mathematics and Mechanics 38(12), 1309, doi 10.21656/1000-0887.380168
-/// Printed: inertia, q0, omega0, |d|, thruster limit, switching angle, horizon, control laws. Reconstructed: gains, the
-/// arm
-/// (-2, 0, 0) m, sampling at 0.1 s with zero-order hold.
+/// Printed: inertia, q0, omega0, |d|, thruster limit, switching angle, horizon, control laws. Reconstructed: gains,
+/// the arm (-2, 0, 0) m, sampling at 0.1 s with zero-order hold.
 /// Erratum: the paper's eq. (3) has + omega x J omega. The angular momentum in space of the free body decides: it is
 /// conserved with - and drifts by up to 27% with +. Nominal is -; variant `as_printed` is +.
 /// state   attitude (body to orbital axes) x omega [rad/s, body]

@@ -44,7 +44,9 @@ struct PathPoint {
 };
 
 /// lambda(t): from (sigma_0, sigma_0') at 0 s to (0, 0) at t_f, and 0 from then on. Reconstructed: a Hermite
-/// polynomial. cubic    lambda'' jumps at t_f, contrary to the paper's condition 1 quintic  lambda'' is 0 at both ends
+/// polynomial.
+///   cubic    lambda'' jumps at t_f, contrary to the paper's condition 1
+///   quintic  lambda'' is 0 at both ends
 template <Scalar S>
 struct DecayingPath {
   using R = Real<S>;
