@@ -83,7 +83,7 @@ void find_sweep(Subject& subject, Facts const& facts) {
                              place_of_formulation(c.formulation));
       if (best && *best <= place) continue;
       best = place;
-      subject.order = std::move(fit);
+      subject.order = fit;
       subject.sweep = std::move(sweep);
     }
   }

@@ -180,7 +180,7 @@ void add_others(Figure& figure, Rows const& rows) {
     auto const [of, which] = component_of(name);
     auto found = std::ranges::find(panels, of, &std::pair<std::string, Panel>::first);
     if (found == panels.end()) {
-      std::string const unit = rows.unit(name);
+      std::string const& unit = rows.unit(name);
       panels.emplace_back(of, panel(unit.empty() ? of : fmt::format("{} [{}]", of, unit)));
       found = panels.end() - 1;
     }

@@ -61,8 +61,8 @@ bool names_file(std::string_view suite, std::string_view name) {
   constexpr std::string_view before = "\"'/", after = "\"'";
   for (std::size_t at = suite.find(name); at < suite.size(); at = suite.find(name, at + 1)) {
     std::size_t const end = at + name.size();
-    bool const whole = at > 0 && before.find(suite[at - 1]) != before.npos && end < suite.size() &&
-                       after.find(suite[end]) != after.npos;
+    bool const whole = at > 0 && before.find(suite[at - 1]) != std::string_view::npos && end < suite.size() &&
+                       after.find(suite[end]) != std::string_view::npos;
     if (whole) return true;
   }
   return false;
