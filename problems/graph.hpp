@@ -1,11 +1,10 @@
 #pragma once
-/// Who hears whom in a swarm: weighted digraphs, the rules that a user's graph can break, spectra of small ones.
+/// Who hears whom in a swarm: weighted digraphs, the rules that a user's graph can break. (Spectra of small ones:
+/// laplacian.hpp.)
 /// Users write links as number triples (i, j, weight), nodes from 1: node i hears node j with weight a_ij.
 /// Inside, nodes count from 0, and everything that a field looks at is linear in nodes and links.
-#include <Eigen/Dense>
 #include <algorithm>
 #include <charconv>
-#include <complex>
 #include <cstdint>
 #include <optional>
 #include <random>
@@ -243,35 +242,6 @@ inline void require_balance(Graph const& graph, std::vector<int> const& group) {
         refuse("must be in-degree balanced: what " + node(i) + " hears from group " + std::to_string(g + 1) +
                " must sum to 0, not " + text(sum[std::size_t(g)]));
   }
-}
-
-// ---- The Laplacian, dense: for small graphs -------------------------------------------------------------------------
-
-/// L_ii = sum_j a_ij, L_ij = -a_ij.
-inline Eigen::MatrixXd laplacian(Graph const& graph) {
-  Eigen::MatrixXd L = Eigen::MatrixXd::Zero(graph.nodes(), graph.nodes());
-  for (int i = 0; i < graph.nodes(); ++i)
-    graph.each_heard(i, [&](int j, double weight) {
-      L(i, i) += weight;
-      L(i, j) -= weight;
-    });
-  return L;
-}
-/// p with p^T L = 0 and sum 1; all positive if the graph is strongly connected with positive weights.
-inline std::vector<double> left_null_vector(Graph const& graph) {
-  Eigen::MatrixXd A = laplacian(graph).transpose();
-  A.row(A.rows() - 1).setOnes();  // the equations sum to 0: one may be left out
-  Eigen::VectorXd const p = A.partialPivLu().solve(Eigen::VectorXd::Unit(A.rows(), A.rows() - 1));
-  return {p.data(), p.data() + p.size()};
-}
-/// Ascending by real part, then by imaginary part.
-inline std::vector<std::complex<double>> laplacian_eigenvalues(Graph const& graph) {
-  Eigen::VectorXcd const values = laplacian(graph).eigenvalues();
-  std::vector<std::complex<double>> list(values.data(), values.data() + values.size());
-  std::sort(list.begin(), list.end(), [](auto const& a, auto const& b) {
-    return a.real() != b.real() ? a.real() < b.real() : a.imag() < b.imag();
-  });
-  return list;
 }
 
 }  // namespace polhode

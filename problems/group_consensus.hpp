@@ -17,6 +17,7 @@
 #include "problems/formulations.hpp"
 #include "problems/graph.hpp"
 #include "problems/history.hpp"
+#include "problems/laplacian.hpp"
 #include "problems/rigid_body.hpp"
 
 namespace polhode {
@@ -145,7 +146,7 @@ class GroupConsensus {
     graph_ = undirected_graph_of(triples_, consensus_bodies);
     require_connected(graph_);
     require_balance(graph_, {consensus_group.begin(), consensus_group.end()});
-    for (std::complex<double> const& value : laplacian_eigenvalues(graph_)) spectrum_.push_back(value.real());
+    spectrum_ = undirected_spectrum(graph_);
   }
 
   static ProblemInfo const& info();
@@ -162,7 +163,7 @@ class GroupConsensus {
   bool torque_free() const { return false; }
   /// The field jumps with the state.
   bool switches() const { return shadow_; }
-  /// The Laplacian's eigenvalues, ascending; it is symmetric.
+  /// The Laplacian's eigenvalues, ascending.
   std::vector<double> const& spectrum() const { return spectrum_; }
   /// What a user should know of a graph that can be run; empty if nothing.
   std::string warning() const {

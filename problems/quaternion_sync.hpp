@@ -13,6 +13,7 @@
 #include "problems/formulations.hpp"
 #include "problems/graph.hpp"
 #include "problems/history.hpp"
+#include "problems/laplacian.hpp"
 #include "problems/mrp.hpp"
 
 namespace polhode {

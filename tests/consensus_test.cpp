@@ -4,6 +4,7 @@
 
 #include "problems/dual.hpp"
 #include "problems/group_consensus.hpp"
+#include "problems/laplacian.hpp"
 #include "tests/chosen_problem.hpp"
 #include "tests/random_numbers.hpp"
 #include "tests/swarm_runs.hpp"
