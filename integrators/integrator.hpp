@@ -85,12 +85,10 @@ class EqualSteps {
   template <class F>
   POLHODE_INLINE void divide(R const& t, R const& t_end, F const& f) const {
     R const span = t_end - t;
-    if (abs_of(span - h_) <= slack_) return f(t, equal_step(span, 1), 1);  // from sample to sample
-    auto const whole = std::int64_t(std::floor(double(span / h_) + 1e-9));
-    R const rest = span - R(double(whole)) * h_;
-    bool const divides = double(rest / h_) < 1e-9;
-    f(t, divides ? equal_step(span, whole) : h_, whole);
-    if (!divides) f(t + R(double(whole)) * h_, rest, 1);
+    if (abs_of(span - h_) <= slack_)  // from sample to sample
+      f(t, std::same_as<R, double> ? h_ : span, 1);
+    else
+      in_equal_steps(t, t_end, h_, f);
   }
   /// n steps of h under no policy but projection; false if the state is no longer finite. Asked outside of what is
   /// flattened: within it g++ 12 spills more, and RK4 takes 1.05 of the time.
@@ -129,14 +127,6 @@ class EqualSteps {
   /// the time). It is a pure function of (t, x), so nothing that it does to itself could be lost.
   using Field = std::conditional_t<std::is_trivially_copyable_v<P>, P const, P const&>;
 
-  /// In double h itself, so that one long advance and many short ones take the same steps to the last bit. A longer
-  /// float gets the exact quotient: there a step given as a double is not exact.
-  R equal_step(R const& span, std::int64_t n) const {
-    if constexpr (std::same_as<R, double>)
-      return h_;
-    else
-      return n > 0 ? span / R(double(n)) : h_;
-  }
   POLHODE_INLINE void loop(Point<M>& x, R t, R h, std::int64_t n) {
     steps_ += n;
     if constexpr (PowerSpace<M>) {

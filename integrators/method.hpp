@@ -154,6 +154,19 @@ constexpr std::string_view refusal(Needs needs) {
   return "";
 }
 
+/// From t to t_end by equal steps of h: calls run(t, h, n) for n of them, and again for what is left if h does not
+/// divide. In double h itself, so that one long advance and many short ones take the same steps to the last bit; a
+/// longer float gets the exact quotient: there a step given as a double is not exact.
+template <class R, class Run>
+POLHODE_INLINE void in_equal_steps(R const& t, R const& t_end, R const& h, Run const& run) {
+  R const span = t_end - t;
+  auto const whole = std::int64_t(std::floor(double(span / h) + 1e-9));
+  R const rest = span - R(double(whole)) * h;
+  bool const divides = double(rest / h) < 1e-9, is_exact = std::same_as<R, double> || whole == 0;
+  run(t, divides && !is_exact ? R(span / R(double(whole))) : h, whole);
+  if (!divides) run(R(t + R(double(whole)) * h), rest, std::int64_t(1));
+}
+
 /// More trial steps than this, between two stops, are no solve: Status::max_steps.
 inline constexpr std::int64_t most_trials = 10'000'000;
 
