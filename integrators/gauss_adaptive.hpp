@@ -6,37 +6,17 @@
 /// quadrature. It falls as h^(s+1), the method's error as h^(2s+1), so the estimate is held to
 /// 0.1 tol^((s+1)/(2s)): errors then are in proportion to the tolerance that was asked for.
 ///
-/// Sources: Hairer & Wanner, Solving ODEs II, IV.8 (estimate; the tolerance as in their code RADAU); the norm and the
-/// law of the step size: step_size.hpp.
-#include <algorithm>
+/// Sources: Hairer & Wanner, Solving ODEs II, IV.8 (estimate; the tolerance as in their code RADAU); the norm:
+/// error_norm.hpp; the law of the step size: step_size.hpp.
 #include <cmath>
+#include <limits>
 
+#include "integrators/error_norm.hpp"
 #include "integrators/gauss_stages.hpp"
-#include "integrators/step_size.hpp"
 
 namespace polhode {
 
-/// What the error of each chart coordinate is small against: the coordinate itself on a flat space, 1 rad on a group.
-template <SmallSpace M>
-struct ChartScale {
-  static Chart<M> of(Point<M> const& x) {
-    if constexpr (M::flat) {
-      return M::centre(x);
-    } else {
-      Chart<M> one;
-      fill(one, 1.0);
-      return one;
-    }
-  }
-};
-template <SmallSpace A, SmallSpace B>
-struct ChartScale<Product<A, B>> {
-  static Chart<Product<A, B>> of(Point<Product<A, B>> const& x) {
-    return {ChartScale<A>::of(x.first), ChartScale<B>::of(x.second)};
-  }
-};
-
-/// |e_i| <= atol + rtol |scale_i| for the estimate e, RMS over components.
+/// Drives Gauss collocation with error control.
 /// evaluations  those of the stages, and one for the slope at x
 /// fails   Status::step_underflow if the step falls below 10 ulp of t, Status::nonlinear_fail if that is because stages
 ///         cannot be solved, Status::max_steps after `most_trials` trial steps in one advance, Status::diverged if the
@@ -51,14 +31,14 @@ class GaussControlled {
   GaussControlled(int stages, P const& problem, Adaptive control, NormPolicy policy)
       : stages_(stages),
         problem_(&problem),
-        control_(inner(control, stages)),
         policy_(policy),
+        norm_(inner(control, stages), shape_of(problem)),
         size_({.most = 5, .memory = 0.2 / (stages + 1), .failed = 0.2}, stages + 1),
         method_(stages, shape_of(problem)) {
     Point<M> const shape = shape_of(problem);
     memory_.fit(shape);
     trial_ = shape;
-    error_ = carry_ = shaped_like<Chart<M>>(shape);
+    error_ = weight_ = carry_ = shaped_like<Chart<M>>(shape);
   }
 
   Status advance(Point<M>& x, R t, R t_end) {
@@ -69,7 +49,9 @@ class GaussControlled {
   Status step(Point<M>& x, R& t, R t_end) {
     slope(*problem_, S(t), x, method_.velocity(), method_.start_slope());
     if (!all_finite(method_.start_slope())) return Status::diverged;
-    if (!size_.known()) start(x, t, t_end - t);
+    if (!size_.known())
+      norm_.first_step(*problem_, t, x, method_.start_slope(), t_end - t, size_,
+                       {weight_, error_, trial_, method_.velocity()});
     bool unsolved = false;
     double const reach = policy_ == NormPolicy::relaxation ? relaxed_reach : 1 + 1e-10;
     R relaxed(0.0);  // gamma - 1 of a step that must land, and is taken again for it
@@ -140,7 +122,6 @@ class GaussControlled {
     memory_.last_step = R(0.0);
     memory_.unconverged = false;
   }
-  using Body = typename BodyOf<M>::type;
 
   /// The tolerance that the estimate is held to.
   static Adaptive inner(Adaptive const& asked, int stages) {
@@ -153,46 +134,20 @@ class GaussControlled {
   double square_of_error(R const& h, Point<M> const& x) {
     method_.slope_by_stages(error_);
     Chart<M>::each([&](S& e, S const& slope) { e = h * slope - e; }, error_, method_.start_slope());
+    norm_.weigh(x, trial_, weight_);
     double const per_gamma = (stages_ + 1) * (stages_ + 1);
-    return mean_square(error_, x, trial_) / (per_gamma * per_gamma);
-  }
-  /// Of k against the tolerance at x and y.
-  double mean_square(Chart<M> const& k, Point<M> const& x, Point<M> const& y) const {
-    double sum = 0;
-    for_each_body<M>(x, [&](auto const& at) {
-      Chart<Body>::each(
-          [&](S const& e, S const& a, S const& b) {
-            double const scale = control_.atol + control_.rtol * std::max(std::fabs(double(a)), std::fabs(double(b)));
-            double const part = double(e) / scale;
-            sum += part * part;
-          },
-          at(k), ChartScale<Body>::of(at(x)), ChartScale<Body>::of(at(y)));
-    });
-    return sum / size_of(k);
-  }
-  /// The first step from x.
-  void start(Point<M> const& x, R const& t, R const& longest) {
-    Chart<M> const& slope_here = method_.start_slope();
-    auto const norm = [&](Chart<M> const& k) { return std::sqrt(mean_square(k, x, x)); };
-    fill(carry_, 0.0);
-    for_each_body<M>(x, [&](auto const& at) { at(carry_) = ChartScale<Body>::of(at(x)); });
-    double const speed = norm(slope_here), euler = size_.euler_step(norm(carry_), speed, longest);
-    displace<M>(
-        x, [&](auto& u, auto const& at) { add(u, R(euler), at(slope_here)); }, error_, trial_);
-    slope(*problem_, S(t + R(euler)), trial_, method_.velocity(), error_);
-    add(error_, R(-1.0), slope_here);
-    size_.start(euler, std::max(speed, norm(error_) / euler), longest);
+    return norm_.mean_square(error_, weight_) / (per_gamma * per_gamma);
   }
 
   int stages_;
   P const* problem_;
-  Adaptive control_;
   NormPolicy policy_;
+  ErrorNorm<M> norm_;
   StepSize<R> size_;
   GaussMethod<M> method_;
   GaussMemory<M> memory_;
   Point<M> trial_;
-  Chart<M> error_, carry_;
+  Chart<M> error_, weight_, carry_;
   Work work_;
   Projections projections_;
 };

@@ -16,6 +16,7 @@
 
 #include "integrators/gauss_lawson.hpp"
 #include "integrators/integrator.hpp"
+#include "integrators/step_size.hpp"
 
 namespace polhode {
 
@@ -73,10 +74,7 @@ class LawsonFixed : public detail::LawsonRun<s, P> {
       : Base(problem, policy), h_(control.h), rule_(rule) {}
 
   Status advance(X& x, double t, double t_end) {
-    auto const whole = std::int64_t(std::floor((t_end - t) / h_ + 1e-9));
-    double const rest = t_end - t - double(whole) * h_;
-    run(x, t, h_, whole);
-    if (!(rest / h_ < 1e-9)) run(x, t + double(whole) * h_, rest, 1);
+    in_equal_steps(t, t_end, h_, [&](double from, double h, std::int64_t n) { run(x, from, h, n); });
     return health_of(x);
   }
   /// One step to t_end, however long.
@@ -134,7 +132,7 @@ class LawsonFixed : public detail::LawsonRun<s, P> {
 };
 
 /// Steps of its own choice. fails   Status::step_underflow below 10 ulp of t, Status::nonlinear_fail if that is because
-/// stages cannot be solved, Status::max_steps after `most` trials in one advance, Status::diverged
+/// stages cannot be solved, Status::max_steps after `most_trials` trials in one advance, Status::diverged
 template <int s, Problem P>
 class LawsonControlled : public detail::LawsonRun<s, P> {
   using Base = detail::LawsonRun<s, P>;
@@ -150,10 +148,15 @@ class LawsonControlled : public detail::LawsonRun<s, P> {
   Status advance(X& x, double t, double t_end) { return go(x, t, t_end, false); }
   /// One accepted step, not beyond t_end; t moves.
   Status step(X& x, double& t, double t_end) { return go(x, t, t_end, true); }
+  /// The last step and the error's memory are forgotten, the step size is kept.
+  void restart() {
+    Base::restart();
+    size_.restart();
+  }
   /// A new run: the step size is forgotten, too.
   void begin() {
-    this->restart();
-    h_ = 0;
+    restart();
+    size_.forget();
   }
   Work work() const {
     Work work = work_;
@@ -163,9 +166,10 @@ class LawsonControlled : public detail::LawsonRun<s, P> {
 
  private:
   using Base::damps, Base::memory_, Base::problem_, Base::registers_;
-  static constexpr std::int64_t most = 10'000'000;
   /// The error of a step over the tolerance, for errors add up; that of the sweeps over the error of a step.
   static constexpr double of_tolerance = 0.05, sweeps_part = 0.05;
+  /// Steps that grow a little cost more than they save: their starting values are worse.
+  static constexpr StepRule step_rule{.least = 0.3, .most = 3, .failed = 0.3, .held = 1.1};
 
   Status go(X& x, double& t, double t_end, bool one) {
     if constexpr (Base::chooses) {
@@ -174,54 +178,38 @@ class LawsonControlled : public detail::LawsonRun<s, P> {
     }
     return go_here(x, t, t_end, one);
   }
-  /// (a)^(1/s), s a power of 2.
-  static POLHODE_INLINE double root(double a) {
-    for (int power = s; power > 1; power /= 2) a = std::sqrt(a);
-    return a;
-  }
   /// By the rate at which the state turns, and that at which its rate changes.
   double starting_step(X const& x, double t, double longest) const {
     Vec3<double> const& w = x.second;
     auto const v = (*problem_)(t, x);
     double const rate = length(w), change = length(v.second);
     double const pace = 0.5 * rate + change / (rate + std::sqrt(change) + 1e-300);
-    return pace > 0 ? std::min(longest, 4 * root(most_tail_) / pace) : longest;
+    return pace > 0 ? std::min(longest, 4 * std::pow(most_tail_, 1.0 / s) / pace) : longest;
   }
   template <int bytes>
   POLHODE_INLINE Status loop(X& x, double& t, double t_end, bool one) {
     using Step = LawsonStep<s, bytes>;
     auto const field = in_lanes<typename Step::L>(*problem_);
     bool const feels = damps();
-    if (!(h_ > 0)) h_ = starting_step(x, t, t_end - t);
-    bool rejected_before = false, unsolved = false;
-    for (std::int64_t trial = 0; t < t_end; ++trial) {
-      if (trial > most) return Status::max_steps;
-      double const left = t_end - t;
-      // As many equal steps as h_ asks for: none is short because it is the last.
-      double const steps = std::ceil(left / h_ * (1 - 1e-10));
-      double const h = steps > 1 ? left / steps : left;
-      if (!(h > 10 * 0x1p-52 * std::fabs(t))) return unsolved ? Status::nonlinear_fail : Status::step_underflow;
-      auto const result = Step::step(field, feels, t, h, x, memory_, rule_, true);
-      bool const good = result.solved && result.tail <= most_tail_;
-      if (!good) [[unlikely]] {
+    if (!size_.known()) size_.begin(starting_step(x, t, t_end - t));
+    bool unsolved = false;
+    for (std::int64_t trials = 0; t < t_end; ++trials) {
+      if (trials > most_trials) return Status::max_steps;
+      auto const trial = size_.even_trial(t, t_end);
+      if (size_.underflows(trial, t)) return unsolved ? Status::nonlinear_fail : Status::step_underflow;
+      auto const result = Step::step(field, feels, t, trial.h, x, memory_, rule_, true);
+      unsolved = !result.solved;
+      double const error = unsolved ? std::numeric_limits<double>::infinity() : result.tail / most_tail_;
+      if (!size_.accepts(error * error)) [[unlikely]] {
         ++work_.rejected;
         if (!all_finite(x)) return Status::diverged;
-        unsolved = !result.solved;
-        double const shrink = unsolved || !std::isfinite(result.tail) ? 0.3 : 0.9 * root(most_tail_ / result.tail);
-        h_ = h * std::max(0.3, shrink);
-        rejected_before = true;
+        size_.reject(trial, error * error);
         continue;
       }
-      double const growth = std::min(3.0, 0.9 * root(most_tail_ / std::max(result.tail, 1e-300)));
-      // Steps that grow a little cost more than they save: their starting values are worse.
-      if (growth < 1)
-        h_ = h * growth;
-      else if (growth > 1.1 && !rejected_before)
-        h_ = std::max(h_, h * growth);
-      rejected_before = false;
-      t = steps > 1 ? t + h : t_end;
+      size_.accept(trial, error * error);
+      t = trial.last ? t_end : t + trial.h;
       ++work_.steps;
-      this->accept(result, h, x);
+      this->accept(result, trial.h, x);
       if (one) break;
     }
     return all_finite(x) ? Status::ok : Status::diverged;
@@ -240,7 +228,7 @@ class LawsonControlled : public detail::LawsonRun<s, P> {
 
   double most_tail_;
   SweepRule rule_;
-  double h_ = 0;
+  StepSize<double> size_{step_rule, s};
   Work work_;
 };
 
@@ -278,8 +266,8 @@ struct GaussLawsonEntry : GaussLawson<s> {
           "Lawson (1967), SIAM J. Numer. Anal. 4, 372; Hairer, Lubich & Wanner, II.1.3; stages in lanes: van der "
           "Houwen & Sommeijer (1990), J. Comput. Appl. Math. 29, 111",
       .pitfall =
-          "on (q, omega) not symplectic: the direction of L errs by O(h^2s); the frame of a step depends on the "
-          "one before: not symmetric",
+          "steps of its own choice keep the norm only to the tolerance of their sweeps; on (q, omega) not symplectic: "
+          "the direction of L errs by O(h^2s); the frame of a step depends on the one before: not symmetric",
       .no_feedback = "the next step begins from the stages of the last",
       .no_relaxation = "the next step begins from the stages of the last"};
 };

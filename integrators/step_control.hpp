@@ -1,18 +1,18 @@
 #pragma once
-/// Adaptive steps by control of the local error: the driver of embedded pairs. The law of the step size: step_size.hpp.
-/// Source: Hairer, Norsett & Wanner, Solving ODEs I, II.4 (norm)
+/// Adaptive steps by control of the local error: the driver of embedded pairs. What an error is: error_norm.hpp; the
+/// law of the step size: step_size.hpp.
 #include <algorithm>
 
+#include "integrators/error_norm.hpp"
 #include "integrators/integrator.hpp"
-#include "integrators/step_size.hpp"
 
 namespace polhode {
 
-/// Drives a pair (see EmbeddedPair) with error control per component: |e_i| <= atol + rtol max(|y_i|, |y_new,i|), RMS.
+/// Drives a pair: EmbeddedPair on a flat space, CommutatorFreeAdaptive on a group.
 ///
 /// fails   Status::step_underflow if the step falls below 10 ulp of t, Status::max_steps after `most_trials` trial
-/// steps in one
-///         advance, Status::diverged if the state or its slope is not finite
+/// steps
+///         in one advance, Status::diverged if the state or its slope is not finite
 ///
 /// keeps_inside: the stepper has interpolate(), for a pair with a continuous extension. It copies the slopes of every
 /// accepted step, which costs memory and some time (dopri5 on one body 6%), but evaluates nothing until asked.
@@ -29,9 +29,8 @@ class Controlled {
   Controlled(Pair pair, P const& problem, Adaptive control, NormPolicy policy)
       : pair_(std::move(pair)),
         problem_(&problem),
-        control_(control),
         policy_(policy),
-        per_component_(1.0 / double(size_of(shape_of(problem)))),
+        norm_(control, shape_of(problem)),
         size_(Pair::rule, Pair::order),
         frame_(shape_of(problem)) {
     if constexpr (PowerSpace<M>) {
@@ -50,7 +49,10 @@ class Controlled {
     if (!fresh_slope_) slope_at(t, x, slope_);
     fresh_slope_ = true;
     if (!all_finite(slope_)) return Status::diverged;
-    if (!size_.known()) start(x, t, t_end - t);
+    if (!size_.known()) {
+      auto&& room = frame_.open();
+      norm_.first_step(*problem_, t, x, slope_, t_end - t, size_, {trial_.weight, trial_.slope, trial_.y, room.v});
+    }
     double const reach = policy_ == NormPolicy::relaxation ? relaxed_reach : 1 + 1e-10;
     R relaxed(0.0);  // gamma - 1 of a step that must land, and is taken again for it
     for (std::int64_t trials = 0; trials < most_trials; ++trials) {
@@ -129,7 +131,7 @@ class Controlled {
   /// A plain problem is copied for the length of a trial, as in EqualSteps.
   using Field = std::conditional_t<std::is_trivially_copyable_v<P>, P const, P const&>;
 
-  /// What a trial step gives; weight is the reciprocal of what is allowed.
+  /// What a trial step gives.
   struct Trial {
     Point<M> y;
     Chart<M> slope, error, third, weight;
@@ -166,50 +168,15 @@ class Controlled {
                                    Trial& made) const {
     frame.k[0] = slope_;
     pair_.attempt(p, t, h, x, frame, made.y, made.slope, made.error);
-    weigh(x, made.y, made.weight);
-    double const square = mean_square(made.error, made.weight);
+    norm_.weigh(x, made.y, made.weight);
+    double const square = norm_.mean_square(made.error, made.weight);
     if constexpr (Pair::two_estimates) {
       pair_.template estimate_third<M>(h, frame, made.third);
-      double const third = mean_square(made.third, made.weight);
+      double const third = norm_.mean_square(made.third, made.weight);
       return square > 0 ? square * (square / (square + 0.01 * third)) : square;
     } else {
       return square;
     }
-  }
-  /// What is allowed at x and y: its reciprocal, for the error is known later, and often twice.
-  POLHODE_INLINE void weigh(Point<M> const& x, Point<M> const& y, Chart<M>& weight) const {
-    Chart<M>::each(
-        [&](S& w, S const& a, S const& b) POLHODE_LAMBDA {
-          double const size = std::max(std::fabs(double(a)), std::fabs(double(b)));
-          w = S(1 / (control_.atol + control_.rtol * size));
-        },
-        weight, x, y);
-  }
-  /// Of an error in units of what is allowed.
-  POLHODE_INLINE double mean_square(Chart<M> const& error, Chart<M> const& weight) const {
-    double even = 0, odd = 0;  // two chains of additions: half the latency
-    bool is_odd = false;
-    Chart<M>::each(
-        [&](S const& e, S const& w) POLHODE_LAMBDA {
-          double const part = double(e) * double(w);
-          (is_odd ? odd : even) += part * part;
-          is_odd = !is_odd;
-        },
-        error, weight);
-    return (even + odd) * per_component_;
-  }
-  double norm(Chart<M> const& error) const { return std::sqrt(mean_square(error, trial_.weight)); }
-  /// The first step from x.
-  void start(Point<M> const& x, R const& t, R const& longest) {
-    weigh(x, x, trial_.weight);
-    double const speed = norm(slope_), euler = size_.euler_step(norm(x), speed, longest);
-    Point<M>& y = trial_.y;
-    Chart<M>& change = trial_.slope;
-    y = x;
-    add(y, R(euler), slope_);
-    slope_at(R(t + R(euler)), y, change);
-    add(change, R(-1.0), slope_);
-    size_.start(euler, std::max(speed, norm(change) / euler), longest);
   }
 
   void slope_at(R const& t, Point<M> const& x, Chart<M>& k) {
@@ -240,9 +207,8 @@ class Controlled {
 
   Pair pair_;
   P const* problem_;
-  Adaptive control_;
   NormPolicy policy_;
-  double per_component_;
+  ErrorNorm<M> norm_;
   StepSize<R> size_;
   Workspace<M, typename Pair::template Frame<M>> frame_;
   Chart<M> slope_;

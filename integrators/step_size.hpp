@@ -19,6 +19,7 @@ struct StepRule {
   double safety = 0.9, least = 0.2, most = 10;
   double memory = 0;    ///< beta; 0 is plain integral control
   double failed = 0.1;  ///< after a trial without an error estimate
+  double held = 1;      ///< a factor from 1 to this leaves h as it is: some methods gain by equal steps
 };
 
 /// log2 x of a finite x >= 1e-300, within 5e-6: all that a step size needs, at a tenth of std::log2's latency, and the
@@ -53,7 +54,8 @@ class StepSize {
         safety_(std::log2(rule.safety)),
         least_(rule.least),
         most_(rule.most),
-        failed_(rule.failed) {}
+        failed_(rule.failed),
+        held_(rule.held) {}
 
   /// A trial: h, and whether it ends at t_end.
   struct Trial {
@@ -67,6 +69,13 @@ class StepSize {
     bool const last = h_ * R(reach) >= left;
     return {last ? left / (R(1.0) + stretch) : h_, last};
   }
+  /// The same, what is left being divided into equal steps: none is short because it is the last.
+  Trial even_trial(R const& t, R const& t_end) const {
+    R const left = t_end - t;
+    double const steps = std::ceil(double(left / h_) * (1 - 1e-10));
+    bool const last = !(steps > 1);
+    return {last ? left : left / R(steps), last};
+  }
   /// The trial is below 10 ulp of t, and not because the end is near.
   static bool underflows(Trial const& trial, R const& t) {
     return double(trial.h) <= 10 * std::numeric_limits<double>::epsilon() * std::fabs(double(t)) && !trial.last;
@@ -79,8 +88,10 @@ class StepSize {
     double const growth = std::clamp(exp2_nearly(safety_ - exponent_ * size + memory_ * last_size_), least_, most);
     last_size_ = std::max(size, first_size);
     rejected_ = false;
+    if (growth < 1) h_ = trial.h * R(growth);
     // A step cut short by t_end says little about the next one.
-    if (!trial.last || trial.h == h_ || growth < 1) h_ = trial.h * R(growth);
+    else if (growth > held_ && (!trial.last || trial.h == h_))
+      h_ = max_of(h_, R(trial.h * R(growth)));
   }
   /// It was not.
   void reject(Trial const& trial, double square) {
@@ -100,23 +111,26 @@ class StepSize {
     last_size_ = first_size;
     rejected_ = false;
   }
-  /// A new run.
-  void forget() {
+  /// A new run, the first step of which is known.
+  void begin(R const& h) {
     restart();
-    h_ = R(0.0);
+    h_ = h;
   }
+  /// A new run.
+  void forget() { begin(R(0.0)); }
   bool known() const { return R(0.0) < h_; }
 
-  /// The starting step in two parts, all sizes in units of what is allowed. First a trial with Euler's method, from the
-  /// sizes of the state and of its slope; then with the greater of slope and second derivative.
+  /// The first step, all sizes in units of what is allowed. First a trial with Euler's method, from the sizes of the
+  /// state and of its slope; then with the greater of slope and second derivative.
+  ///   change(h)  the size of what an Euler step of h [s] changes the slope by
   /// Source: Hairer, Norsett & Wanner I, II.4, "starting step size"
-  static double euler_step(double size, double speed, R const& longest) {
-    double const h = size < 1e-5 || speed < 1e-5 ? 1e-6 : 0.01 * size / speed;
-    return std::min(h, double(longest));
-  }
-  void start(double euler, double greatest, R const& longest) {
+  template <class F>
+  void start(double size, double speed, R const& longest, F const& change) {
+    double const most = double(longest), tiny = 1e-5;
+    double const euler = std::min(size < tiny || speed < tiny ? 1e-6 : 0.01 * size / speed, most);
+    double const greatest = std::max(speed, change(R(euler)) / euler);
     double const h = greatest <= 1e-15 ? std::max(1e-6, euler * 1e-3) : std::pow(0.01 / greatest, 1.0 / order_);
-    h_ = R(std::min({100 * euler, h, double(longest)}));
+    h_ = R(std::min({100 * euler, h, most}));
   }
 
  private:
@@ -126,7 +140,7 @@ class StepSize {
   int order_;
   double exponent_, memory_;  ///< of squares
   double safety_;             ///< log2
-  double least_, most_, failed_;
+  double least_, most_, failed_, held_;
   double last_size_ = first_size;  ///< log2 of the square of the last error, not below that
   bool rejected_ = false;          ///< the last trial
   R h_ = R(0.0);

@@ -41,7 +41,7 @@ using Size = StepSize<double>;
 /// A step size of h far from t_end.
 Size begun(double h = 0.1) {
   Size size(rule, order);
-  size.start(h, std::pow(h, -order) * 0.01, 1);
+  size.begin(h);
   return size;
 }
 double next(Size const& size) {
@@ -109,6 +109,38 @@ TEST(StepSize, OnlyANewRunForgetsTheSize) {
   EXPECT_TRUE(size.known());
   size.forget();
   EXPECT_FALSE(size.known());
+}
+
+TEST(StepSize, StartsAsSlopeAndCurvatureAllow) {
+  Size size(rule, order);
+  double tried = 0;
+  size.start(2, 5, 1, [&](double h) { return 400 * (tried = h); });
+  EXPECT_NEAR(tried, 0.01 * 2 / 5, 1e-15);
+  EXPECT_NEAR(next(size), std::pow(0.01 / 400, 1.0 / order), 1e-15) << "the second derivative decides";
+  size.start(2, 5, 0.05, [](double h) { return h; });
+  EXPECT_EQ(next(size), 0.05) << "and no longer than there is";
+}
+
+TEST(StepSize, DividesWhatIsLeftEvenly) {
+  Size const size = begun();
+  EXPECT_NEAR(size.even_trial(0, 0.35).h, 0.35 / 4, 1e-15);
+  EXPECT_FALSE(size.even_trial(0, 0.35).last);
+  EXPECT_TRUE(size.even_trial(0, 0.1 * (1 + 5e-11)).last);
+  EXPECT_EQ(size.even_trial(0.3, 0.35).h, 0.35 - 0.3);
+}
+
+TEST(StepSize, IsHeldWhereItWouldGrowALittle) {
+  Size size({.safety = 1, .held = 1.1}, order);
+  size.begin(0.1);
+  auto const grown_by = [&](double factor) {
+    size.accept(size.trial(0, 1e9), std::pow(factor, -2 * order));
+    return next(size) / 0.1;
+  };
+  EXPECT_EQ(grown_by(1.09), 1);
+  EXPECT_NEAR(grown_by(1.2), 1.2, 1e-4);
+  size.begin(0.1);
+  size.accept(size.even_trial(0, 0.11), std::pow(1.2, -2 * order));
+  EXPECT_EQ(next(size), 0.1) << "a step that is shorter to be even does not shorten those to come";
 }
 
 TEST(StepSize, LeavesNoTinyRest) {
