@@ -22,9 +22,9 @@ class Ode45Stepper {
 
  public:
   Ode45Stepper(P const& problem, Adaptive control, NormPolicy policy)
-      : problem_(&problem), control_(control), policy_(policy), start_(problem.initial()), y_(start_), new_(start_) {
-    slope_ = new_slope_ = error_ = shaped_like<Chart<M>>(start_);
-    if constexpr (PowerSpace<M>) frame_.fit(start_);
+      : problem_(&problem), control_(control), policy_(policy), y_(problem.initial()) {
+    slope_ = error_ = shaped_like<Chart<M>>(y_);
+    if constexpr (PowerSpace<M>) last_.fit(y_);
   }
 
   /// The end of the smooth arc that begins now [s]: steps are at most a tenth of it, and the last one is stretched.
@@ -38,11 +38,11 @@ class Ode45Stepper {
   }
   /// To the end of the next step, or to t_end if that comes first.
   Status step(Point<M>& x, R& t, R t_end) {
+    if (!(t < horizon_)) set_horizon(t, t_end);  // nobody has said where the arc ends
     if (fresh_) {
-      if (!(t < horizon_)) set_horizon(t, t_end);
       y_ = x;
       reached_ = t;
-      slope(*problem_, S(t), y_, frame_.v, slope_);
+      slope_at(reached_);
       if (!all_finite(slope_)) return Status::diverged;
       if (!(R(0.0) < h_)) h_ = first_step();
       fresh_ = false;
@@ -50,7 +50,7 @@ class Ode45Stepper {
     if (!(t < reached_))
       if (Status const status = go_on(); status != Status::ok) return status;
     if (t_end < reached_) {
-      interpolate((t_end - begun_) / (reached_ - begun_), x);
+      interpolate(t_end, x);
       t = t_end;
     } else {
       x = y_;
@@ -77,8 +77,8 @@ class Ode45Stepper {
     for (bool failed = false;; failed = true) {
       R const left = horizon_ - reached_;
       R const h = R(1.1) * h_ >= left ? left : h_;
-      frame_.k[0] = slope_;
-      pair_.attempt(*problem_, reached_, h, y_, frame_, new_, new_slope_, error_);
+      last_.made.k.front() = slope_;
+      pair_.attempt(*problem_, reached_, h, y_, last_.made, last_.y, last_.made.k.back(), error_);
       double const err = size_of_error();
       if (err <= control_.rtol) {
         accept(h);
@@ -86,24 +86,26 @@ class Ode45Stepper {
         return all_finite(slope_) ? Status::ok : Status::diverged;
       }
       ++work_.rejected;
-      if (!(double(h) > least)) return all_finite(new_) ? Status::step_underflow : Status::diverged;
+      if (!(double(h) > least)) return all_finite(last_.y) ? Status::step_underflow : Status::diverged;
       double const factor = std::isfinite(err) ? std::max(0.1, 0.8 * std::pow(control_.rtol / err, 0.2)) : 0.1;
       h_ = std::max(R(least), h * R(failed ? 0.5 : factor));
     }
   }
   void accept(R const& h) {
     begun_ = reached_;
-    start_ = y_;
-    y_ = new_;
-    slope_ = new_slope_;
+    last_.x = y_;
+    y_ = last_.y;
+    slope_ = last_.made.k.back();
     // The last step ends where it was meant to, whatever rounding made of the sum.
     reached_ = horizon_ - (reached_ + h) < R(1e-12) * h ? horizon_ : reached_ + h;
     h_ = h;
     ++work_.steps;
     if (policy_ == NormPolicy::none) return;
     projections_.template apply<M>(y_, policy_, double(h));
-    slope(*problem_, S(reached_), y_, frame_.v, slope_);
+    slope_at(reached_);
   }
+  /// slope_ at y_.
+  void slope_at(R const& t) { slope(*problem_, S(t), y_, last_.made.v, slope_); }
   double threshold() const { return control_.atol / control_.rtol; }
   double size_of_error() const {
     double most = 0;
@@ -113,7 +115,7 @@ class Ode45Stepper {
           double const part = std::fabs(double(e)) / scale;
           if (!(part <= most)) most = part;  // a NaN is the largest of all
         },
-        error_, y_, new_);
+        error_, y_, last_.y);
     return most;
   }
   R first_step() const {
@@ -126,31 +128,20 @@ class Ode45Stepper {
     double const rate = most / (0.8 * std::pow(control_.rtol, 0.2));
     return double(longest_) * rate > 1 ? R(1 / rate) : longest_;
   }
-  /// The last step's continuous extension at the part theta of it.
-  void interpolate(R const& theta, Point<M>& x) const {
-    R const one(1.0), a = theta * theta * (R(3.0) - R(2.0) * theta), b = theta * theta * (theta - one) * (theta - one);
+  /// The state at time t [s] within the last step, under the norm policy as its end is.
+  void interpolate(R const& t, Point<M>& x) const {
     R const h = reached_ - begun_;
-    auto const weight = [&](int i, double over, double constant, double linear, double under) {
-      return a * DormandPrince5::b[i].template as<R>() + b * R(over) * (R(constant) - R(linear) * theta) / R(under);
-    };
-    x = start_;
-    add(x, R(h * (weight(0, -5, 2558722523., 31403016., 11282082432.) + theta * (theta - one) * (theta - one))),
-        frame_.k[0]);
-    add(x, R(h * weight(2, 100, 882725551., 15701508., 32700410799.)), frame_.k[2]);
-    add(x, R(h * weight(3, -25, 443332067., 31403016., 1880347072.)), frame_.k[3]);
-    add(x, R(h * weight(4, 32805, 23143187., 3489224., 199316789632.)), frame_.k[4]);
-    add(x, R(h * weight(5, -55, 29972135., 7076736., 822651844.)), frame_.k[5]);
-    R const last = theta * theta * (theta - one) + b * R(10.0) * (R(7414447.) - R(829305.) * theta) / R(29380423.);
-    add(x, R(h * last), new_slope_);
+    pair_.template interpolate<M>(R((t - begun_) / h), h, last_, x);
+    if (policy_ != NormPolicy::none) Projections::apply_inside<M>(last_.x, x, policy_, double(t - begun_), R(0.0));
   }
 
   Pair5 pair_;
   P const* problem_;
   Adaptive control_;
   NormPolicy policy_;
-  typename Pair5::template Frame<M> frame_;
-  Point<M> start_, y_, new_;  ///< where the last step began, where it ended, and the next one's trial
-  Chart<M> slope_, new_slope_, error_;
+  typename Pair5::template Inside<M> last_;  ///< the last step, before the norm policy; while one is tried, its trial
+  Point<M> y_;                               ///< where the last step ended
+  Chart<M> slope_, error_;
   R begun_ = R(0.0), reached_ = R(0.0), horizon_ = R(0.0), longest_ = R(0.0), h_ = R(0.0);
   bool fresh_ = true;
   Work work_;

@@ -108,7 +108,7 @@ struct EmbeddedPair {
         (requires { T::dense; }) auto bind_dense(P const& p, Adaptive control, NormPolicy policy) const {
       return Controlled<EmbeddedPair, P, true>(*this, p, control, policy);
     }
-    static constexpr int order = T::order, error_order = T::error_order;
+    static constexpr int order = T::order;
     static constexpr StepRule rule = control_rule;
     static constexpr bool first_same_as_last = T::first_same_as_last;
     /// The error is estimated twice: estimate_third().
@@ -126,7 +126,7 @@ struct EmbeddedPair {
     /// One trial step from x, whose slope is frame.k[0]; writes the new point and the error estimate, and the new slope
     /// to `last` if first_same_as_last.
     template <Problem P, class M = typename P::Space, class S = typename M::Scalar, class R = Real<S>>
-    POLHODE_INLINE void attempt(P const& p, R const& t, R const& h, Point<M> const& x, Frame<M>& frame, Point<M>& y,
+    POLHODE_INLINE void attempt(P const& p, R const& t, R const& h, Point<M> const& x, auto& frame, Point<M>& y,
                                 [[maybe_unused]] Chart<M>& last, Chart<M>& error) const {
       Explicit<T>::finish(p, S(t), h, x, frame, y);
       if constexpr (first_same_as_last) {

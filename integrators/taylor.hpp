@@ -253,7 +253,7 @@ class TaylorStepper {
     if (policy_ != NormPolicy::none) projections_.template apply<M>(y_, policy_, h);
     return Status::ok;
   }
-  /// The state within the last step.
+  /// The state at time t [s] within the last step, under the norm policy as its end is.
   Point<M> at(R const& t) const {
     std::array<R, std::size_t(Point<M>::size)> components;
     series_.increments(t - begun_, components.data());
@@ -261,6 +261,7 @@ class TaylorStepper {
     load(change, components.data());
     Point<M> x = start_;
     add(x, change);
+    if (policy_ != NormPolicy::none) Projections::apply_inside<M>(start_, x, policy_, double(t - begun_), R(0.0));
     return x;
   }
 
