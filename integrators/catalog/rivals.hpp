@@ -11,7 +11,7 @@ namespace polhode {
 
 /// The methods of other libraries; those that are not built refuse, and say so.
 struct Rivals : Types<OdeintRk4, OdeintCashKarp54, OdeintDopri5, OdeintRkf78, OdeintBulirschStoer, OdeintAbm8,  // Boost
-                      Cvode<true>, Cvode<false>, ArkodeErk<4>, ArkodeErk<5>, ArkodeErk<8>, ArkodeDirk, Ida, GslRk8pd,
-                      GslMsadams> {};  // SUNDIALS
+                      Cvode<true>, Cvode<false>, ArkodeErk<4>, ArkodeErk<5>, ArkodeErk<8>, ArkodeDirk, Ida,  // SUNDIALS
+                      GslRk8pd, GslMsadams> {};                                                              // GSL
 
 }  // namespace polhode
