@@ -1,9 +1,8 @@
 #include "bench/catalogue.hpp"
 
-#include <map>
 #include <nlohmann/json.hpp>
 
-#include "bench/cell.hpp"
+#include "bench/vocabulary.hpp"
 
 namespace polhode::bench {
 namespace {
@@ -14,13 +13,9 @@ nlohmann::ordered_json to_json(IntegratorWord const& word) {
   json["adaptive_only"] = word.adaptive && !word.fixed;
   json["rival"] = word.rival;
   json["preserves"] = word.preserves;
-  // Of the space; what is needed of the problem itself stands apart.
-  static std::map<std::string, std::string> const of_the_space{
-      {"rigid_body", "none"}, {"prescribed_rates", "group"}, {"constraint", "none"}};
-  auto const found = of_the_space.find(word.needs);
-  json["needs"] = found == of_the_space.end() ? word.needs : found->second;
+  json["needs"] = word.needs_of_space;
   json["needs_problem"] = nullptr;
-  if (found != of_the_space.end()) json["needs_problem"] = word.needs;
+  if (word.needs != word.needs_of_space) json["needs_problem"] = word.needs;
   json["source"] = word.source;
   json["pitfall"] = word.pitfall;
   if (!word.not_built.empty()) json["not_built"] = word.not_built;

@@ -40,6 +40,22 @@ std::vector<Column> columns_of(PreparedCell const& prepared) {
   return columns;
 }
 
+results::Series history_series(std::string const& cell, std::vector<Column> const& columns, History const& history,
+                               std::size_t most) {
+  results::Series series{.cell = cell, .name = "history", .columns = {"t"}, .units = {"s"}, .rows = {}};
+  for (Column const& column : columns) {
+    series.columns.push_back(column.name);
+    series.units.push_back(column.unit);
+  }
+  std::size_t const rows = history.times.size(), stride = std::max<std::size_t>(1, rows / most);
+  for (std::size_t i = 0; i < rows; ++i) {
+    if (i % stride != 0 && i + 1 != rows) continue;
+    std::vector<double>& row = series.rows.emplace_back(1, history.times[i]);
+    row.insert(row.end(), history.rows[i].begin(), history.rows[i].end());
+  }
+  return series;
+}
+
 namespace {
 
 /// What a measured run keeps: many bodies would fill the memory.

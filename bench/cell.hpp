@@ -1,6 +1,7 @@
 #pragma once
 /// One cell, run: the record of what came of it, or its trajectory alone.
 #include <atomic>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -47,6 +48,11 @@ struct Trajectory {
   Outcome outcome;
 };
 Trajectory simulate(PreparedCell const& prepared, Limits const& limits = {});
+
+/// A history as rows of the record and of the report: the time in front, units beside the names. Of more than `most`
+/// rows about as many are kept, evenly, and the last.
+results::Series history_series(std::string const& cell, std::vector<Column> const& columns, History const& history,
+                               std::size_t most = std::numeric_limits<std::size_t>::max());
 
 /// Columns of a trajectory with their units: q1 .. q4, wx wy wz (and s1 s2 s3 where they are the state) of every body,
 /// and the problem's own.

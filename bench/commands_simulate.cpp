@@ -3,10 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
-#include <fstream>
 #include <limits>
 #include <memory>
 
@@ -15,12 +12,11 @@
 #include "bench/commands.hpp"
 #include "bench/ensemble_job.hpp"
 #include "bench/provenance.hpp"
-#include "results/store.hpp"
 
 namespace polhode::bench {
 namespace {
 
-std::string csv_of(PreparedCell const& prepared, Trajectory const& trajectory) {
+std::string csv_of(PreparedCell const& prepared, Trajectory const& trajectory, results::Series const& rows) {
   results::Cell const& cell = prepared.cell;
   std::string text = fmt::format(
       "# polhode {} {}\n# problem {} {}\n# {} on {}, policy {}, {}\n", version(), build_id(), cell.problem,
@@ -30,25 +26,12 @@ std::string csv_of(PreparedCell const& prepared, Trajectory const& trajectory) {
   text += fmt::format("# steps {}, rejected {}, evaluations {}\n# status {}{}\n", trajectory.outcome.work.steps,
                       trajectory.outcome.work.rejected, trajectory.outcome.evaluations,
                       results::name_of(trajectory.status), trajectory.reason.empty() ? "" : ": " + trajectory.reason);
-  text += "# units: t [s]";
-  for (Column const& column : trajectory.columns)
-    if (!column.unit.empty()) text += fmt::format(", {} [{}]", column.name, column.unit);
-  text += "\nt";
-  for (Column const& column : trajectory.columns) text += "," + column.name;
-  text += '\n';
-  for (std::size_t i = 0; i < trajectory.history.times.size(); ++i)
-    text += fmt::format("{:.17g},{:.17g}\n", trajectory.history.times[i], fmt::join(trajectory.history.rows[i], ","));
+  std::vector<std::string> units;
+  for (std::size_t i = 0; i < rows.columns.size(); ++i)
+    if (!rows.units[i].empty()) units.push_back(fmt::format("{} [{}]", rows.columns[i], rows.units[i]));
+  text += fmt::format("# units: {}\n{}\n", fmt::join(units, ", "), fmt::join(rows.columns, ","));
+  for (std::vector<double> const& row : rows.rows) text += fmt::format("{:.17g}\n", fmt::join(row, ","));
   return text;
-}
-
-void write_text(std::string const& file, std::string const& text) {
-  if (file.empty()) {
-    std::fwrite(text.data(), 1, text.size(), stdout);
-    return;
-  }
-  std::ofstream out(file, std::ios::binary);
-  out << text;
-  if (!out.flush()) throw results::StoreError(fmt::format("{}: cannot be written: {}", file, std::strerror(errno)));
 }
 
 /// Samples and output times may differ: only rows at multiples of `every` are wanted.
@@ -62,20 +45,6 @@ void keep_outputs(Trajectory& trajectory, std::vector<Stop> const& stops) {
   }
   trajectory.history.times = std::move(kept.times);
   trajectory.history.rows = std::move(kept.rows);
-}
-
-/// The rows as the report takes them.
-results::Series series_of(Trajectory const& trajectory) {
-  results::Series series{.cell = "", .name = "history", .columns = {"t"}, .units = {"s"}, .rows = {}};
-  for (Column const& column : trajectory.columns) {
-    series.columns.push_back(column.name);
-    series.units.push_back(column.unit);
-  }
-  for (std::size_t i = 0; i < trajectory.history.times.size(); ++i) {
-    std::vector<double>& row = series.rows.emplace_back(1, trajectory.history.times[i]);
-    row.insert(row.end(), trajectory.history.rows[i].begin(), trajectory.history.rows[i].end());
-  }
-  return series;
 }
 
 std::string title_of(results::Cell const& cell) {
@@ -129,10 +98,10 @@ int run_simulation(results::Cell const& cell, double every, std::string const& o
   warn(prepared.problem->warning());
   Trajectory trajectory = simulate(prepared);
   keep_outputs(trajectory, prepared.plan.stops);
-  write_text(out, csv_of(prepared, trajectory));
+  results::Series const rows = history_series("", trajectory.columns, trajectory.history);
+  write_out(out, csv_of(prepared, trajectory, rows));
   bool const failed = trajectory.status != results::Status::ok;
-  if (!picture.empty() && !(failed && trajectory.history.rows.size() < 2))
-    plot(series_of(trajectory), title_of(prepared.cell), picture);
+  if (!picture.empty() && !(failed && rows.rows.size() < 2)) plot(rows, title_of(prepared.cell), picture);
   if (!failed) return exit_ok;
   std::fputs(fmt::format("polhode: {} on {}: {}\n", prepared.cell.integrator, prepared.cell.problem, trajectory.reason)
                  .c_str(),

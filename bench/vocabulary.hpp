@@ -32,7 +32,8 @@ struct IntegratorWord {
   bool fixed = false, adaptive = false;
   bool rival = false;
   std::vector<std::string> preserves;
-  std::string needs;  ///< "none", "flat", "group", "free_body"
+  std::string needs;           ///< "none", "flat", "group", "free_body", "rigid_body", "prescribed_rates", "constraint"
+  std::string needs_of_space;  ///< the same; "none" or "group" where it is of the problem that more is needed
   std::string source, pitfall;
   std::string not_built;  ///< why its runs are refused in this binary; empty if it is here
 };

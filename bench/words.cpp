@@ -1,15 +1,30 @@
 /// The vocabulary, made from the two catalogues.
 #include <algorithm>
+#include <array>
 
-#include "bench/cell.hpp"
+#include "bench/problems.hpp"
+#include "bench/vocabulary.hpp"
 
 namespace polhode::bench {
 namespace {
 
 constexpr std::array family_names{"explicit_rk", "gauss", "lie_group", "rigid_body",
                                   "splitting",   "exact", "taylor",    "library"};
-constexpr std::array needs_names{
-    "none", "flat", "flat", "group", "free_body", "rigid_body", "prescribed_rates", "constraint", "constraint", "flat"};
+/// What a method needs in words: in all, and of the space alone.
+struct NeedsName {
+  Needs needs;
+  char const *name, *of_space;
+};
+constexpr std::array needs_names{NeedsName{Needs::none, "none", "none"},
+                                 NeedsName{Needs::flat, "flat", "flat"},
+                                 NeedsName{Needs::quaternion, "flat", "flat"},
+                                 NeedsName{Needs::group, "group", "group"},
+                                 NeedsName{Needs::free_body, "free_body", "free_body"},
+                                 NeedsName{Needs::rigid_body, "rigid_body", "none"},
+                                 NeedsName{Needs::prescribed_rates, "prescribed_rates", "group"},
+                                 NeedsName{Needs::constraint, "constraint", "none"},
+                                 NeedsName{Needs::constraint_on_group, "constraint", "none"},
+                                 NeedsName{Needs::constraint_on_quaternion, "flat", "flat"}};
 struct PreservesName {
   Preserves flag;
   char const* name;
@@ -49,7 +64,9 @@ IntegratorWord integrator_word(MethodOn<M> const& method) {
   word.rival = info.rival;
   for (PreservesName const& entry : preserves_names)
     if (info.preserves & entry.flag) word.preserves.emplace_back(entry.name);
-  word.needs = needs_names.at(std::size_t(info.needs));
+  NeedsName const& needs = *std::ranges::find(needs_names, info.needs, &NeedsName::needs);
+  word.needs = needs.name;
+  word.needs_of_space = needs.of_space;
   word.source = info.source;
   word.pitfall = info.pitfall;
   word.not_built = info.not_built;
