@@ -4,9 +4,11 @@
 
 #include <CLI/CLI.hpp>
 #include <charconv>
+#include <cmath>
 
 #include "bench/suite.hpp"
 #include "bench/suite_graphs.hpp"
+#include "bench/text.hpp"
 #include "problems/parameters.hpp"
 
 namespace polhode::bench {
@@ -41,6 +43,11 @@ std::uint64_t whole_number(std::string_view name, std::string const& text, std::
   return value;
 }
 
+int whole_number(std::string_view name, double value, int least, int most) {
+  if (value >= least && value <= most && value == std::floor(value)) return int(value);
+  throw UsageError(fmt::format("{} = {}: a whole number from {} to {} is wanted", name, value, least, most));
+}
+
 std::pair<std::string, std::vector<double>> parse_setting(std::string const& text) {
   auto const equals = text.find('=');
   if (equals == std::string::npos || equals == 0)
@@ -56,14 +63,12 @@ std::pair<std::string, std::vector<double>> parse_setting(std::string const& tex
     }
   }
   std::vector<double> values;
-  for (std::size_t from = equals + 1; from <= text.size();) {
-    std::size_t const to = std::min(text.find(',', from), text.size());
+  for (std::string_view const field : fields_of(value)) {
     try {
-      values.push_back(number_in(std::string_view(text).substr(from, to - from)));
+      values.push_back(number_in(field));
     } catch (UsageError const& error) {
       throw UsageError(fmt::format("--set {}: {}", quote(text), error.what()));
     }
-    from = to + 1;
   }
   return {name, values};
 }

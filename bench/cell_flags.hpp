@@ -15,9 +15,14 @@ CLI::Option* add_number(CLI::App& verb, std::string const& flag, double& value, 
 
 /// The whole number that is the text of flag `name`. Throws UsageError with the range.
 std::uint64_t whole_number(std::string_view name, std::string const& text, std::uint64_t least, std::uint64_t most);
+/// The same of a flag that was read as a number.
+int whole_number(std::string_view name, double value, int least, int most);
 
 /// Parses "inertia=0.5,0.85,1". Throws UsageError.
 std::pair<std::string, std::vector<double>> parse_setting(std::string const& text);
+
+/// How many threads --threads may ask for.
+inline constexpr int most_threads = 1024;
 
 /// The flags that name one cell.
 struct CellFlags {

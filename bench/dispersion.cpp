@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 #include <optional>
 
 #include "bench/philox.hpp"
+#include "bench/text.hpp"
 
 namespace polhode::bench {
 namespace {
@@ -31,12 +31,6 @@ Form const& form_of(Kind kind) {
   return *std::ranges::find(forms, kind, &Form::kind);
 }
 
-std::string trimmed(std::string_view text) {
-  auto const first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return std::string(text.substr(first, text.find_last_not_of(" \t") - first + 1));
-}
-
 /// One --disperse on its way; knows its own text for messages.
 class Reader {
  public:
@@ -46,8 +40,8 @@ class Reader {
     auto const equals = text_.find('=');
     if (equals == std::string::npos || equals == 0) refuse("write NAME=DISTRIBUTION, e.g. omega0.x=normal(0.1,0.02)");
     Dispersion read;
-    ParameterWord const& parameter = read_name(trimmed(text_.substr(0, equals)), read);
-    read.distribution = read_distribution(trimmed(text_.substr(equals + 1)));
+    ParameterWord const& parameter = read_name(trimmed(std::string_view(text_).substr(0, equals)), read);
+    read.distribution = read_distribution(trimmed(std::string_view(text_).substr(equals + 1)));
     check_attitude(read, parameter);
     std::string const name = read.component < 0 ? read.parameter
                                                 : fmt::format("{}.{}", read.parameter,
@@ -67,7 +61,7 @@ class Reader {
     constexpr std::array letters{"x", "y", "z", "w"};
     return parameter.value.size() <= letters.size() ? letters[i] : std::to_string(i + 1);
   }
-  ParameterWord const& read_name(std::string const& name, Dispersion& read) const {
+  ParameterWord const& read_name(std::string_view name, Dispersion& read) const {
     auto const dot = name.find('.');
     read.parameter = name.substr(0, dot);
     std::vector<std::string> known;
@@ -86,7 +80,7 @@ class Reader {
       if (name == shape)
         refuse(fmt::format("{} is no number that can be dispersed; change it for all with --set", name));
   }
-  int read_component(ParameterWord const& parameter, std::string const& name) const {
+  int read_component(ParameterWord const& parameter, std::string_view name) const {
     std::vector<std::string> known;
     for (std::size_t i = 0; i < parameter.value.size(); ++i) known.push_back(component_name(parameter, i));
     if (known.size() == 1) refuse(fmt::format("{} is one number: write {}=...", parameter.name, parameter.name));
@@ -95,14 +89,14 @@ class Reader {
     refuse(fmt::format("{} has no component {}; choose from {}", parameter.name, quote(name), fmt::join(known, ", ")));
   }
 
-  Distribution read_distribution(std::string const& text) const {
+  Distribution read_distribution(std::string_view text) const {
     std::vector<std::string> usages, names;
     for (Form const& form : forms) {
       usages.emplace_back(form.usage);
       names.emplace_back(form.name);
     }
     auto const open = text.find('(');
-    std::string const name = trimmed(text.substr(0, open));
+    std::string_view const name = trimmed(text.substr(0, open));
     auto const form = std::ranges::find(forms, name, &Form::name);
     if (form == forms.end()) {
       std::string const near = nearest(name, names);
@@ -120,18 +114,12 @@ class Reader {
     check(read);
     return read;
   }
-  std::vector<double> read_numbers(std::string const& text) const {
+  std::vector<double> read_numbers(std::string_view text) const {
     std::vector<double> numbers;
-    if (trimmed(text).empty()) return numbers;
-    for (std::size_t from = 0; from <= text.size();) {
-      std::size_t const to = std::min(text.find(',', from), text.size());
-      std::string const field = trimmed(text.substr(from, to - from));
-      double value = 0;
-      auto const [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-      if (error != std::errc() || end != field.data() + field.size() || !std::isfinite(value))
-        refuse(fmt::format("{} is not a finite number", quote(field)));
-      numbers.push_back(value);
-      from = to + 1;
+    for (std::string_view const field : fields_of(text)) {
+      auto const number = finite_number(field);
+      if (!number) refuse(fmt::format("{} is not a finite number", quote(field)));
+      numbers.push_back(*number);
     }
     return numbers;
   }

@@ -55,7 +55,6 @@ class Dispersions {
   /// The ends of a dispersion's support, or a normal law's mean: what a rule of the parameter must allow.
   std::map<std::string, std::vector<double>> with_end(std::map<std::string, std::vector<double>> set,
                                                       Dispersion const& of, bool upper) const;
-  std::uint64_t seed() const { return seed_; }
 
  private:
   std::size_t place_of(std::string const& parameter) const;

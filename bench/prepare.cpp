@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "bench/refusal.hpp"
+#include "bench/text.hpp"
 
 namespace polhode::bench {
 namespace {
@@ -34,21 +35,10 @@ NormPolicy policy_named(std::string_view name) {
   throw std::out_of_range("no norm policy " + std::string(name));
 }
 
-/// The words of a variant text, in its order.
-std::vector<std::string> words_of(std::string const& variant) {
-  std::vector<std::string> words;
-  for (std::size_t from = 0; from < variant.size();) {
-    std::size_t const to = std::min(variant.find(',', from), variant.size());
-    words.push_back(variant.substr(from, to - from));
-    from = to + 1;
-  }
-  return words;
-}
-
 /// A variant text without some of its words.
 std::string without(std::string const& variant, std::vector<std::string> const& dropped) {
-  std::vector<std::string> kept = words_of(variant);
-  std::erase_if(kept, [&](std::string const& word) { return std::ranges::find(dropped, word) != dropped.end(); });
+  std::vector<std::string_view> kept = fields_of(variant);
+  std::erase_if(kept, [&](std::string_view word) { return std::ranges::find(dropped, word) != dropped.end(); });
   return fmt::format("{}", fmt::join(kept, ","));
 }
 
@@ -66,8 +56,9 @@ void check_number_of_stops(Schedule const& schedule) {
 }  // namespace
 
 Choice choice_of(results::Cell const& cell) {
-  std::vector<std::string> const words = words_of(cell.variant);
-  return {.words = {words.begin(), words.end()}, .set = cell.set, .step = cell.h.value_or(0)};
+  Choice choice{.words = {}, .set = cell.set, .step = cell.h.value_or(0)};
+  for (std::string_view const word : fields_of(cell.variant)) choice.words.emplace(word);
+  return choice;
 }
 
 PreparedCell prepare(results::Cell cell, double every) {

@@ -5,10 +5,10 @@
 #include <fnmatch.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <set>
-#include <sstream>
+
+#include "bench/text.hpp"
 
 namespace polhode::bench {
 
@@ -25,33 +25,20 @@ namespace {
 using results::Cell;
 using Words = std::vector<std::string>;
 
-std::optional<double> as_number(std::string_view text) {
-  double value = 0;
-  auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  bool const complete = error == std::errc{} && end == text.data() + text.size() && std::isfinite(value);
-  return complete ? std::optional(value) : std::nullopt;
-}
-
 bool number_matches(std::string const& pattern, std::optional<double> value) {
   if (!value) return false;
-  auto const wanted = as_number(pattern);
+  auto const wanted = finite_number(pattern);
   if (!wanted) return glob(pattern, fmt::format("{}", *value));
   return std::abs(*wanted - *value) <= 1e-12 * std::abs(*wanted);
 }
 
-Words split(std::string const& text) {
-  std::istringstream parts(text);
-  Words words;
-  for (std::string word; std::getline(parts, word, ',');) words.push_back(word);
-  return words;
-}
-
 bool variant_matches(std::string const& pattern, std::string const& variant) {
   if (glob(pattern, variant)) return true;
-  auto const wanted = split(pattern);
-  auto const words = split(variant);
-  auto const present = [&](std::string const& want) {
-    return std::any_of(words.begin(), words.end(), [&](auto const& word) { return glob(want, word); });
+  auto const wanted = fields_of(pattern);
+  auto const words = fields_of(variant);
+  auto const present = [&](std::string_view want) {
+    return std::ranges::any_of(words,
+                               [&](std::string_view word) { return glob(std::string(want), std::string(word)); });
   };
   return !wanted.empty() && std::all_of(wanted.begin(), wanted.end(), present);
 }
@@ -118,10 +105,10 @@ void check_pattern(std::string const& key, std::string const& pattern, Selectabl
   if (is_glob(pattern) || key == "set") return;
   auto const words = known.find(key);
   if (words == known.end()) {
-    if (as_number(pattern)) return;
+    if (finite_number(pattern)) return;
     throw UsageError(fmt::format("{}: {} is neither a number nor a glob", key, quote(pattern)));
   }
-  auto const parts = key == "variant" ? split(pattern) : Words{pattern};
+  auto const parts = key == "variant" ? fields_of(pattern) : std::vector<std::string_view>{pattern};
   for (auto const& part : parts) {
     bool const found = std::find(words->second.begin(), words->second.end(), part) != words->second.end();
     if (!found) throw UsageError(unknown(key, part, words->second));

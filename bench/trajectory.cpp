@@ -11,7 +11,8 @@
 #include <numeric>
 #include <optional>
 
-#include "bench/vocabulary.hpp"
+#include "bench/messages.hpp"
+#include "bench/text.hpp"
 #include "results/whole_file.hpp"
 
 namespace polhode::bench {
@@ -20,22 +21,6 @@ namespace {
 constexpr std::size_t most_numbers = 50'000'000;
 constexpr std::size_t longest_line = std::size_t{64} << 20;
 constexpr double gap_factor = 10;  ///< a gap is this many times the median interval
-
-std::string_view trimmed(std::string_view text) {
-  auto const first = text.find_first_not_of(" \t\r");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t\r") - first + 1);
-}
-
-std::vector<std::string_view> fields_of(std::string_view line) {
-  std::vector<std::string_view> fields;
-  for (std::size_t from = 0; from <= line.size();) {
-    std::size_t const to = std::min(line.find(',', from), line.size());
-    fields.push_back(trimmed(line.substr(from, to - from)));
-    from = to + 1;
-  }
-  return fields;
-}
 
 /// "t, q1, q2, ...": all of them, if they are not too many.
 std::string list_of(std::vector<std::string> const& names) {

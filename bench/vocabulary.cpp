@@ -7,6 +7,8 @@
 #include <cmath>
 #include <cstddef>
 
+#include "bench/text.hpp"
+
 namespace polhode::bench {
 namespace {
 
@@ -24,22 +26,6 @@ void check_known(std::string_view kind, std::string_view word, std::vector<std::
                  std::string_view where = "") {
   bool const found = std::find(known.begin(), known.end(), word) != known.end();
   if (!found) throw UsageError(unknown(kind, word, known, where));
-}
-
-std::string_view trimmed(std::string_view text) {
-  auto const first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
-std::vector<std::string_view> split(std::string_view text) {
-  std::vector<std::string_view> words;
-  for (std::size_t begin = 0; begin <= text.size();) {
-    std::size_t const end = std::min(text.find(',', begin), text.size());
-    words.push_back(trimmed(text.substr(begin, end - begin)));
-    begin = end + 1;
-  }
-  return words;
 }
 
 /// The index of the group that holds `word`, or UsageError.
@@ -66,10 +52,8 @@ IntegratorWord const& Vocabulary::integrator(std::string_view name) const {
 }
 
 std::string canonical_variant(ProblemWord const& problem, std::string_view selection) {
-  auto const blank = trimmed(selection).empty();
-  auto const words = blank ? std::vector<std::string_view>{} : split(selection);
   std::vector<std::string> chosen(problem.variants.size());
-  for (auto const word : words) {
+  for (auto const word : fields_of(selection)) {
     if (word.empty()) throw UsageError(fmt::format("variant {}: a word is missing beside a comma", quote(selection)));
     auto& choice = chosen[group_of(problem, word)];
     if (choice == word) throw UsageError(fmt::format("variant {}: {} is given twice", quote(selection), word));

@@ -192,7 +192,7 @@ TEST(CliUsage, Parameters) {
                     {"k_pe=1", 2, "unknown parameter 'k_pe' of free_body; choose from inertia, q0, omega0"},
                     {"inertia", 2, "--set 'inertia': write NAME=NUMBER[,NUMBER...]"},
                     {"=3", 2, "--set '=3': write NAME=NUMBER[,NUMBER...]"},
-                    {"inertia=", 2, "--set 'inertia=': '' is not a number"},
+                    {"inertia=", 2, "parameter inertia: no value; give at least one number"},
                     {"inertia=1,,2", 2, "--set 'inertia=1,,2': '' is not a number"},
                     {"inertia=1,x,2", 2, "--set 'inertia=1,x,2': 'x' is not a number"},
                     {"inertia=1,1,1e999", 2, "--set 'inertia=1,1,1e999': '1e999' is beyond the range of a double"},
