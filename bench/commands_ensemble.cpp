@@ -1,12 +1,12 @@
 /// The verb ensemble: many samples of one problem, and what is known of them all.
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
 #include <cerrno>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <limits>
@@ -15,8 +15,10 @@
 #include <thread>
 
 #include "bench/cell_flags.hpp"
+#include "bench/clock.hpp"
 #include "bench/commands.hpp"
 #include "bench/ensemble_output.hpp"
+#include "bench/machine.hpp"
 #include "bench/progress.hpp"
 #include "bench/ranks.hpp"
 #include "bench/signals.hpp"
@@ -45,17 +47,14 @@ struct EnsembleFlags {
       throw UsageError(fmt::format("settle = {}: an angle in rad greater than 0 is wanted", settle));
     if (has_every->count() > 0) check_positive("every", every);
     wanted.every = every;
-    if (!(worst >= 0 && worst <= 1000 && worst == std::floor(worst)))
-      throw UsageError(fmt::format("worst = {}: a whole number from 0 to 1000 is wanted", worst));
-    wanted.worst = std::size_t(worst);
+    wanted.worst = std::size_t(whole_number("worst", worst, 0, 1000));
     wanted.raw = !raw.empty();
     return wanted;
   }
   int thread_count(int ranks_here) const {
     int const processors = std::max(1, int(std::thread::hardware_concurrency()));
     if (has_threads->count() == 0) return std::max(1, processors / ranks_here);
-    if (threads >= 1 && threads <= 1024 && threads == std::floor(threads)) return int(threads);
-    throw UsageError(fmt::format("threads = {}: a whole number from 1 to 1024 is wanted", threads));
+    return whole_number("threads", threads, 1, most_threads);
   }
 };
 
@@ -64,10 +63,9 @@ std::ofstream opened(std::filesystem::path const& file) {
   if (!out) throw results::StoreError(fmt::format("{}: cannot be written: {}", file.string(), std::strerror(errno)));
   return out;
 }
+/// The greatest resident size of this process [B]; that of getrusage may be its parent's.
 std::int64_t peak_memory() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return std::int64_t(usage.ru_maxrss) * 1024;
+  return 1024 * std::atoll(entry_of("/proc/self/status", "VmHWM").c_str());
 }
 
 /// Deals the items out and joins what comes back, in order.
@@ -84,9 +82,9 @@ results::EnsembleStatistics gather(EnsembleJob const& job, EnsembleTiming& timin
   ranks.distribute(
       job.items(),
       [&](std::int64_t item) {  // one at a time
-        double const begin = cpu_seconds();
+        double const begin = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
         std::string bytes = job.work(item, timing.threads, interrupted);
-        timing.cpu_seconds += cpu_seconds() - begin;
+        timing.cpu_seconds += seconds_of(CLOCK_PROCESS_CPUTIME_ID) - begin;
         timing.samples_here += job.samples_in(item);
         return bytes;
       },

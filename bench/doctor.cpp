@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <ctime>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "bench/clock.hpp"
+#include "bench/machine.hpp"
 #include "results/record.hpp"
 
 namespace polhode::bench {
@@ -17,28 +17,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string first_line(fs::path const& file) {
-  std::ifstream in(file);
-  std::string line;
-  std::getline(in, line);
-  return line;
-}
 double number_in(std::string const& text) {
   return text.empty() ? std::nan("") : std::strtod(text.c_str(), nullptr);
-}
-
-/// The number behind `key` in lines of "key value" or "key: value kB".
-double field_of(fs::path const& file, std::string const& key) {
-  std::ifstream in(file);
-  for (std::string line; std::getline(in, line);)
-    if (line.starts_with(key)) return number_in(line.substr(std::min(line.size(), line.find_first_of("0123456789"))));
-  return std::nan("");
-}
-
-double seconds_of(clockid_t clock) {
-  timespec now{};
-  clock_gettime(clock, &now);
-  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
 }
 
 double percentile(std::vector<double> values, double part) {
@@ -89,16 +69,9 @@ void add_throttling(std::vector<Finding>& findings, fs::path const& root) {
   fs::path const group = root / "sys/fs/cgroup";
   if (std::string const quota = first_line(group / "cpu.max"); !quota.empty() && !quota.starts_with("max"))
     findings.push_back({"processor quota", quota + " us", "the container is stopped when it has used its share"});
-  if (double const throttled = field_of(group / "cpu.stat", "nr_throttled"); throttled > 0)
+  if (double const throttled = number_in(entry_of(group / "cpu.stat", "nr_throttled")); throttled > 0)
     findings.push_back(
         {"quota throttling", fmt::format("{:.0f} times", throttled), "the container has been stopped for its quota"});
-}
-
-bool is_virtual(fs::path const& root) {
-  std::ifstream in(root / "proc/cpuinfo");
-  for (std::string line; std::getline(in, line);)
-    if (line.starts_with("flags")) return line.find(" hypervisor") != std::string::npos;
-  return false;
 }
 
 }  // namespace
@@ -150,7 +123,7 @@ std::vector<Finding> machine_state(fs::path const& root) {
   add_throttling(findings, root);
   findings.push_back({"virtual machine", is_virtual(root) ? "yes" : "no",
                       is_virtual(root) ? "neighbours cannot be seen from here" : ""});
-  double const available = field_of(root / "proc/meminfo", "MemAvailable") / (1 << 20);
+  double const available = number_in(entry_of(root / "proc/meminfo", "MemAvailable")) / (1 << 20);
   if (std::isfinite(available)) findings.push_back({"memory", fmt::format("{:.1f} GiB available", available), ""});
   return findings;
 }

@@ -1,9 +1,8 @@
 #include "bench/ensemble_lanes.hpp"
 
-#include <time.h>
-
 #include <array>
 
+#include "bench/clock.hpp"
 #include "bench/ensemble.hpp"
 #include "integrators/runge_kutta.hpp"
 #include "problems/free_body.hpp"
@@ -22,12 +21,6 @@ std::unique_ptr<LaneFleet> lane_fleet(std::string const& problem, FleetPlan cons
   return nullptr;
 }
 
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
-}
-
 double plain_kernel_rate(int threads) {
   constexpr std::int64_t bodies = 4096, steps = 1000;
   constexpr double h = 0.05, least_seconds = 0.2;
@@ -37,15 +30,15 @@ double plain_kernel_rate(int threads) {
     p.start.second.x = gather<S>(block, [](std::int64_t k) { return 0.1 + 1e-5 * double(k); });
     return p;
   };
-  double const begin = cpu_seconds();
+  double const begin = seconds_of(CLOCK_PROCESS_CPUTIME_ID);
   double body_steps = 0;
-  while (cpu_seconds() - begin < least_seconds * threads) {
+  while (seconds_of(CLOCK_PROCESS_CPUTIME_ID) - begin < least_seconds * threads) {
     std::vector<double> ends(std::size_t(bodies * threads));
     run_ensemble_on_threads(threads, Rk4{}, EnsembleRun{h, steps, 0}, bodies * threads, make,
                             [&](std::int64_t k, auto const& x, Status) { ends[std::size_t(k)] = x.first.w; });
     body_steps += double(steps) * double(bodies) * double(threads);
   }
-  return body_steps / (cpu_seconds() - begin);
+  return body_steps / (seconds_of(CLOCK_PROCESS_CPUTIME_ID) - begin);
 }
 
 }  // namespace polhode::bench

@@ -50,8 +50,6 @@ std::unique_ptr<LaneFleet> fleet_of_free_bodies(FleetPlan const& plan);
 std::unique_ptr<LaneFleet> fleet_of_slews(FleetPlan const& plan);
 std::unique_ptr<LaneFleet> fleet_of_captures(FleetPlan const& plan);
 
-/// Processor time of this process, all threads together [s].
-double cpu_seconds();
 /// Body-steps per second of processor time of the plain RK4 kernel on free bodies, so many threads at once: what a rate
 /// is compared with.
 double plain_kernel_rate(int threads);

@@ -9,7 +9,6 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <list>
@@ -17,10 +16,10 @@
 #include <utility>
 #include <vector>
 
+#include "bench/clock.hpp"
+
 namespace polhode::bench {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 [[noreturn]] void fail(char const* what) {
   throw std::system_error(errno, std::generic_category(), what);
@@ -30,7 +29,7 @@ using Clock = std::chrono::steady_clock;
 class Child {
  public:
   Child(std::size_t which, double limit, std::function<std::string(std::size_t)> const& work)
-      : number(which), limited_(limit > 0), end_(Clock::now() + to_ticks(limit)) {
+      : number(which), limit_(limit) {
     int ends[2];
     if (::pipe2(ends, O_CLOEXEC) != 0) fail("a pipe for an isolated cell");
     pid_t const parent = ::getpid();
@@ -64,7 +63,7 @@ class Child {
     return got == 0 || (got < 0 && errno != EINTR && errno != EAGAIN);
   }
   void kill_if_late() {
-    if (!limited_ || ended_.late || Clock::now() < end_) return;
+    if (ended_.late || !limit_.passed()) return;
     ended_.late = true;
     ::kill(pid_, SIGKILL);
   }
@@ -84,9 +83,6 @@ class Child {
   std::size_t number;
 
  private:
-  static Clock::duration to_ticks(double seconds) {
-    return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
-  }
   /// The child's whole life. It leaves by _exit: buffers and locks that it inherited are not its own.
   [[noreturn]] void live(int to, pid_t parent, std::function<std::string(std::size_t)> const& work) const {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -121,8 +117,7 @@ class Child {
   static constexpr int threw = 70, unheard = 71;  ///< exit codes
   pid_t pid_ = 0;
   int from_ = -1;
-  bool limited_;
-  Clock::time_point end_;
+  TimeLimit limit_;
   Ended ended_;
 };
 

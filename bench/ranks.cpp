@@ -1,14 +1,14 @@
 #include "bench/ranks.hpp"
 
 #include <cstdlib>
-#include <ctime>
 #include <initializer_list>
 #include <map>
 #include <optional>
 #include <utility>
 
+#include "bench/clock.hpp"
+#include "bench/messages.hpp"
 #include "bench/notes.hpp"
-#include "bench/vocabulary.hpp"
 
 namespace polhode::bench {
 namespace {
@@ -29,13 +29,6 @@ std::optional<int> rank_by_launcher() {
 }
 int size_by_launcher() {
   return first_of({"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_NTASKS"}).value_or(1);
-}
-
-/// Processor time of this thread [s].
-double thread_time() {
-  timespec time{};
-  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
 }
 
 }  // namespace
@@ -116,14 +109,14 @@ void Ranks::distribute(std::int64_t count, Work const& work, Deliver const& deli
     }
     return;
   }
-  double const start = thread_time();
+  double const start = seconds_of(CLOCK_THREAD_CPUTIME_ID);
   std::exception_ptr failure;
   bool goes_on = true;
   if (manager())
     failure = deal_out(*channel_, count, work, deliver, stopping);
   else
     goes_on = serve(*channel_, work, stopping);
-  cpu_time_ += thread_time() - start;
+  cpu_time_ += seconds_of(CLOCK_THREAD_CPUTIME_ID) - start;
   if (manager()) return end_for_all(failure);
   if (!goes_on) leave_quietly();
 }

@@ -1,9 +1,9 @@
 #pragma once
 /// What the harness writes down of a run, step by step: its history and its metrics; and what makes a run end early.
-#include <chrono>
 #include <vector>
 
 #include "bench/cell.hpp"
+#include "bench/clock.hpp"
 #include "bench/measure.hpp"
 
 namespace polhode::bench {
@@ -11,24 +11,20 @@ namespace polhode::bench {
 /// Thrown by a watch when a run has used up its time.
 struct Timeout {};
 
+/// Looks at the clock, and whether the run is to stop, now and then: a step may be shorter than a look.
 class Deadline {
  public:
-  explicit Deadline(Limits const& limits)
-      : stop_(limits.stop), limited_(limits.timeout > 0), end_(Clock::now() + to_ticks(limits.timeout)) {}
+  explicit Deadline(Limits const& limits) : stop_(limits.stop), limit_(limits.timeout) {}
+  /// Throws Interrupted or Timeout.
   void check() {
     if (++calls_ % 256 != 0) return;
     if (stop_ && *stop_) throw Interrupted{};
-    if (limited_ && Clock::now() > end_) throw Timeout{};
+    if (limit_.passed()) throw Timeout{};
   }
 
  private:
-  using Clock = std::chrono::steady_clock;
-  static Clock::duration to_ticks(double seconds) {
-    return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
-  }
   std::atomic<bool> const* stop_;
-  bool limited_;
-  Clock::time_point end_;
+  TimeLimit limit_;
   std::int64_t calls_ = 0;
 };
 
