@@ -18,16 +18,11 @@
 #include "bench/run_report.hpp"
 #include "bench/signals.hpp"
 #include "bench/slurm.hpp"
+#include "bench/tasks.hpp"
 #include "results/store.hpp"
 
 namespace polhode::bench {
 namespace {
-
-int thread_count(double wanted) {
-  constexpr int most = 1024;
-  if (wanted >= 1 && wanted <= most && wanted == std::floor(wanted)) return int(wanted);
-  throw UsageError(fmt::format("threads = {}: a whole number from 1 to {} is wanted", wanted, most));
-}
 
 /// "2/8": the second of eight parts. Throws UsageError.
 void read_shard(std::string const& text, RunOptions& options) {
@@ -69,11 +64,7 @@ struct SlurmFlags {
   std::string time{};
 };
 
-int part_count(char const* flag, double wanted) {
-  constexpr int most = 100000;
-  if (wanted >= 1 && wanted <= most && wanted == std::floor(wanted)) return int(wanted);
-  throw UsageError(fmt::format("{} {}: a whole number from 1 to {} is wanted", flag, wanted, most));
-}
+constexpr int most_parts = 100'000;
 
 /// The command that each job is to run; relative paths would depend on where it starts.
 std::vector<std::string> command_of(std::string const& suite, std::filesystem::path const& out,
@@ -95,9 +86,10 @@ std::string script_of(std::string const& name, RunOptions const& options, SlurmF
   std::filesystem::path const file = suite_file(name);
   bool const built_in = file.parent_path() == suites_folder();
   Suite const suite = read_suite(file, vocabulary());
-  auto const cells = int(count_cells(suite, options.filter));
+  auto const cells = int(tasks_of(suite, options.filter).size());
   bool const array = flags.ranks == 0;
-  int const parts = array ? part_count("--shards", flags.shards) : part_count("--ranks", flags.ranks);
+  int const parts =
+      array ? whole_number("shards", flags.shards, 1, most_parts) : whole_number("ranks", flags.ranks, 1, most_parts);
   std::filesystem::path const out = options.out.empty() ? default_folder(suite) : options.out;
   return slurm_script({.name = suite.name,
                        .command = command_of(built_in ? name : std::filesystem::absolute(file).string(), out, options),
@@ -170,8 +162,8 @@ void add_run(CLI::App& app, int& code) {
     if (no_limit)
       throw UsageError(
           fmt::format("timeout = {}: a limit is a finite number of seconds; 0 for none", options->timeout));
-    if (has_threads->count() > 0) options->threads = thread_count(*threads);
-    if (has_ranks->count() > 0) part_count("--ranks", slurm->ranks);
+    if (has_threads->count() > 0) options->threads = whole_number("threads", *threads, 1, most_threads);
+    if (has_ranks->count() > 0) whole_number("ranks", slurm->ranks, 1, most_parts);
     if (slurm->print) return fmt::print("{}", script_of(*name, *options, *slurm));
     interruptible();
     code = run_on_ranks(*name, *options, *traffic);

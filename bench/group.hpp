@@ -5,24 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "bench/cell.hpp"
-#include "bench/cell_result.hpp"
 #include "bench/isolate.hpp"
 #include "bench/progress.hpp"
+#include "bench/references.hpp"
 #include "bench/run.hpp"
-#include "bench/suite.hpp"
+#include "bench/tasks.hpp"
 #include "results/store.hpp"
 
 namespace polhode::bench {
-
-/// One cell of a run.
-struct Task {
-  PreparedCell prepared;
-  std::string id;
-  bool keep_history = false;
-  CellResult result;
-  bool died = false;  ///< its process did
-};
 
 /// What a group needs besides its cells.
 struct Surroundings {

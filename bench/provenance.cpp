@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "bench/additions.hpp"
+#include "bench/machine.hpp"
 #include "build_info.hpp"  // written by the build: version, commit, flags
 
 #ifdef POLHODE_HAS_SUNDIALS
@@ -25,23 +26,6 @@
 
 namespace polhode::bench {
 namespace {
-
-std::string first_line(std::filesystem::path const& file) {
-  std::ifstream in(file);
-  std::string line;
-  std::getline(in, line);
-  return line;
-}
-/// The value of "key : value" in /proc/cpuinfo.
-std::string cpu_field(std::string const& key) {
-  std::ifstream in("/proc/cpuinfo");
-  for (std::string line; std::getline(in, line);) {
-    if (line.rfind(key, 0) != 0) continue;
-    auto const colon = line.find(':');
-    if (colon != std::string::npos && colon + 2 <= line.size()) return line.substr(colon + 2);
-  }
-  return {};
-}
 
 std::string libraries() {
   std::string list =
@@ -109,12 +93,13 @@ results::Meta provenance() {
   auto const note = [&](std::string const& key, std::string const& value) {
     if (!value.empty()) meta[key] = value;
   };
-  note("cpu_model", cpu_field("model name"));
-  note("cpu_cache", cpu_field("cache size"));
-  note("cpu_mhz", cpu_field("cpu MHz"));  // as it says now: nominal in most virtual machines
+  std::filesystem::path const processor = "/proc/cpuinfo";
+  note("cpu_model", entry_of(processor, "model name"));
+  note("cpu_cache", entry_of(processor, "cache size"));
+  note("cpu_mhz", entry_of(processor, "cpu MHz"));  // as it says now: nominal in most virtual machines
   note("cpu_governor", first_line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor"));
   note("load", first_line("/proc/loadavg"));
-  note("virtualised", cpu_field("flags").find(" hypervisor") != std::string::npos ? "true" : "false");
+  note("virtualised", is_virtual() ? "true" : "false");
   note("added", added());
   cpu_set_t cpus;
   if (sched_getaffinity(0, sizeof cpus, &cpus) == 0) note("cpus_available", std::to_string(CPU_COUNT(&cpus)));
@@ -124,6 +109,19 @@ results::Meta provenance() {
     note("kernel", fmt::format("{} {} {}", system.sysname, system.release, system.machine));
   }
   return meta;
+}
+
+std::string path_in_repository(std::filesystem::path const& file) {
+  std::error_code none;
+  std::filesystem::path const here = std::filesystem::current_path(none);
+  auto const is_top = [&](std::filesystem::path const& folder) {
+    return std::filesystem::exists(folder / ".git", none);
+  };
+  std::filesystem::path top = here;
+  while (!is_top(top) && top.has_relative_path()) top = top.parent_path();
+  std::filesystem::path const path = std::filesystem::relative(file, is_top(top) ? top : here, none);
+  bool const inside = !file.empty() && !path.empty() && *path.begin() != "..";
+  return inside ? path.generic_string() : "";
 }
 
 }  // namespace polhode::bench

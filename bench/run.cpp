@@ -7,21 +7,19 @@
 #include <chrono>
 #include <map>
 #include <optional>
-#include <regex>
 #include <set>
 #include <sstream>
 #include <thread>
 
-#include "bench/catalogue.hpp"
 #include "bench/data.hpp"
 #include "bench/group.hpp"
 #include "bench/progress.hpp"
 #include "bench/provenance.hpp"
+#include "bench/result_folder.hpp"
 #include "bench/signals.hpp"
+#include "bench/tasks.hpp"
 #include "results/file_name.hpp"
-#include "results/folder_lock.hpp"
 #include "results/store.hpp"
-#include "results/whole_file.hpp"
 
 namespace polhode::bench {
 namespace {
@@ -30,113 +28,6 @@ namespace {
 std::int64_t nanoseconds_now() {
   auto const now = std::chrono::system_clock::now().time_since_epoch();
   return std::chrono::duration_cast<std::chrono::nanoseconds>(now).count();
-}
-
-std::string path_of(results::Cell const& cell) {
-  return fmt::format("{}/{}/{}/{}/{}", cell.problem, cell.variant, cell.formulation, cell.integrator, cell.policy);
-}
-
-std::vector<Task> prepare_all(Suite const& suite, std::string const& filter) {
-  std::regex pattern;
-  try {
-    pattern = std::regex(filter);
-  } catch (std::regex_error const& error) {
-    throw UsageError(fmt::format("--filter {}: not a regular expression: {}", quote(filter), error.what()));
-  }
-  std::vector<Task> tasks;
-  std::set<std::string> seen;
-  for (SuiteCell const& wanted : suite.cells) {
-    if (!filter.empty() && !std::regex_search(path_of(wanted.cell), pattern)) continue;
-    Task task;
-    try {
-      task.prepared = prepare(wanted.cell);
-    } catch (UsageError const& error) {
-      throw SuiteError(fmt::format("suite '{}': {}", suite.name, error.what()));
-    }
-    task.prepared.reference = wanted.reference;
-    task.id = results::cell_id(task.prepared.cell);
-    task.keep_history = std::find(wanted.tags.begin(), wanted.tags.end(), "history") != wanted.tags.end();
-    // A cell with the horizon written out and one that takes the default are the same.
-    if (seen.insert(task.id).second) tasks.push_back(std::move(task));
-  }
-  if (tasks.empty())
-    throw NothingSelected(filter.empty()
-                              ? fmt::format("suite '{}' has no cells", suite.name)
-                              : fmt::format("--filter {} matches no cell of suite '{}'", quote(filter), suite.name));
-  return tasks;
-}
-
-/// Keeps every n-th cell, so that shards on equal suites are disjoint and together the whole.
-void take_shard(std::vector<Task>& tasks, RunOptions const& options) {
-  if (options.shards <= 1) return;
-  std::size_t const all = tasks.size();
-  std::vector<Task> kept;
-  for (std::size_t i = std::size_t(options.shard - 1); i < all; i += std::size_t(options.shards))
-    kept.push_back(std::move(tasks[i]));
-  tasks = std::move(kept);
-  if (tasks.empty())
-    throw NothingSelected(fmt::format("shard {}/{} of {} cells is empty", options.shard, options.shards, all));
-}
-
-/// The cells that a folder already holds from this build.
-std::set<std::string> finished(std::filesystem::path const& out, bool retry_failed) {
-  results::Contents const contents = results::read(out);
-  std::set<std::string> done;
-  for (results::Record const& record : contents.records) {
-    bool const good = record.status == results::Status::ok || record.status == results::Status::refused;
-    if (record.build == build_id() && (good || !retry_failed)) done.insert(record.cell);
-  }
-  return done;
-}
-
-/// Where a file stands in the repository in which the run is started, or, without one, below the folder where it is;
-/// empty for one outside. There a CI server marks what `check` finds.
-std::string path_in_repository(std::filesystem::path const& file) {
-  std::error_code none;
-  std::filesystem::path const here = std::filesystem::current_path(none);
-  auto const is_top = [&](std::filesystem::path const& folder) {
-    return std::filesystem::exists(folder / ".git", none);
-  };
-  std::filesystem::path top = here;
-  while (!is_top(top) && top.has_relative_path()) top = top.parent_path();
-  std::filesystem::path const path = std::filesystem::relative(file, is_top(top) ? top : here, none);
-  bool const inside = !file.empty() && !path.empty() && *path.begin() != "..";
-  return inside ? path.generic_string() : "";
-}
-
-/// A rough guess [s]: what a measured step, a reference and a timed cell take on a machine of today.
-double expected_time(std::vector<Task> const& tasks, Timing const& timing, int processors) {
-  constexpr double per_step = 4e-6, per_reference = 0.5, adaptive_steps = 1000;
-  double accuracy = 0, timed = 0;
-  std::set<std::string> subjects;
-  for (Task const& task : tasks) {
-    if (!task.prepared.refusal.empty()) continue;
-    results::Cell const& cell = task.prepared.cell;
-    accuracy += per_step * (cell.h ? cell.t_end / *cell.h : adaptive_steps);
-    if (timing.enabled) timed += 1.4 * timing.min_time * timing.repetitions;  // and its calibration
-    subjects.insert(reference_subject(task.prepared.physics));
-  }
-  return (accuracy + per_reference * double(subjects.size())) / processors + timed;
-}
-
-void say_what_would_run(std::vector<Task> const& tasks, Timing const& timing, int processors) {
-  for (Task const& task : tasks) {
-    results::Cell const& cell = task.prepared.cell;
-    std::string const control = cell.h ? fmt::format("h={:g}", *cell.h) : fmt::format("rtol={:g}", *cell.rtol);
-    fmt::print("{} {} {}{}\n", task.id, path_of(cell), control,
-               task.prepared.refusal.empty() ? "" : "  refused: " + task.prepared.refusal);
-  }
-  int const seconds = int(std::lround(expected_time(tasks, timing, processors)));
-  fmt::print("{} cells, about {} min {} s\n", tasks.size(), seconds / 60, seconds % 60);
-}
-
-/// What users should know of their choices, each once.
-std::set<std::string> warnings_of(std::vector<Task> const& tasks) {
-  std::set<std::string> warnings;
-  for (Task const& task : tasks)
-    if (std::string const warning = task.prepared.problem->warning(); !warning.empty())
-      warnings.insert(task.prepared.cell.problem + ": " + warning);
-  return warnings;
 }
 
 /// What a rank tells the manager of a pack.
@@ -170,8 +61,8 @@ class SuiteRun {
       if (ranks_.manager()) say_what_would_run(tasks_, timing_, ranks_.size() * options_.threads);
       return summary_;
     }
-    std::optional<results::FolderLock> lock;  // the manager's, for the job
-    take_over(ranks_.from_manager([&] { return prepare_folder(lock); }));
+    std::optional<ResultFolder> folder;  // the manager's, for the job
+    take_over(ranks_.from_manager([&] { return open_folder(folder); }));
     if (tasks_.empty()) return summary_;
     if (ranks_.manager())
       for (std::string const& warning : warnings_of(tasks_)) warn(warning);
@@ -185,41 +76,20 @@ class SuiteRun {
   void prepare_cells() {
     if (options_.isolate && !ranks_.alone())
       throw UsageError("--isolate is for one process; under mpirun a rank that dies ends the job, and a rerun goes on");
-    tasks_ = prepare_all(suite_, options_.filter);
-    take_shard(tasks_, options_);
+    tasks_ = tasks_of(suite_, options_.filter);
+    take_shard(tasks_, options_.shard, options_.shards);
     summary_.cells = tasks_.size();
     summary_.out = options_.out.empty() ? default_folder(suite_) : options_.out;
   }
 
-  /// The manager's: locks the folder, writes what belongs to the suite. Returns when the run began, and a 1 or 0 for
-  /// each cell: whether it is left to do.
-  std::string prepare_folder(std::optional<results::FolderLock>& lock) {
-    std::filesystem::path const& out = summary_.out;
-    std::error_code error;
-    std::filesystem::create_directories(out, error);
-    if (error) throw results::StoreError(fmt::format("{}: {}", out.string(), error.message()));
-    bool const whole = options_.shards <= 1 || options_.fresh;
-    if (whole)
-      lock.emplace(out);
-    else
-      lock.emplace(out, options_.shard, options_.shards);
-    if (options_.fresh) results::remove_records(out);
-    std::set<std::string> const done = finished(out, options_.retry_failed);
+  /// The manager's: returns when the run began, and a 1 or 0 for each cell: whether it is left to do.
+  std::string open_folder(std::optional<ResultFolder>& folder) {
+    folder.emplace(summary_.out, options_);
+    std::set<std::string> const done = folder->finished(options_.retry_failed);
     std::string left;
     for (Task const& task : tasks_) left += done.contains(task.id) ? '0' : '1';
-    if (left.find('1') != std::string::npos) {
-      results::write_text(out / "suite.toml", suite_.text);
-      results::write_catalogue(out, catalogue_text());
-      copy_files_of_suite();
-    }
+    if (left.find('1') != std::string::npos) folder->write_suite(suite_);
     return fmt::format("{:020} {}", nanoseconds_now(), left);
-  }
-  void copy_files_of_suite() const {
-    for (std::filesystem::path const& file : suite_.files) {
-      std::filesystem::path const copy = summary_.out / file.filename();
-      if (!std::filesystem::exists(copy) || !std::filesystem::equivalent(file, copy))
-        std::filesystem::copy_file(file, copy, std::filesystem::copy_options::overwrite_existing);
-    }
   }
   /// What the manager found: the same cells are left on all ranks.
   void take_over(std::string const& found) {
@@ -315,10 +185,6 @@ class SuiteRun {
 
 std::filesystem::path default_folder(Suite const& suite) {
   return std::filesystem::path("polhode-results") / results::file_name_of(suite.name);
-}
-
-std::size_t count_cells(Suite const& suite, std::string const& filter) {
-  return prepare_all(suite, filter).size();
 }
 
 RunSummary run_suite(Suite const& suite, RunOptions const& options, Ranks& ranks) {

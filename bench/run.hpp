@@ -32,8 +32,6 @@ struct RunSummary {
 
 /// Where a run of the suite goes if it is not told: polhode-results/SUITE.
 std::filesystem::path default_folder(Suite const& suite);
-/// How many cells of the suite --filter selects. Throws what run_suite does for mistakes in them.
-std::size_t count_cells(Suite const& suite, std::string const& filter);
 
 /// Every rank calls it; each writes a file of records of its own, and the manager's summary is that of all. Several
 /// ranks take no times. Throws SuiteError, UsageError (bad filter), NothingSelected, results::StoreError,
