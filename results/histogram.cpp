@@ -3,61 +3,33 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
 
 namespace polhode::results {
 
-void Bytes::put(std::int64_t number) {
-  text_.append(reinterpret_cast<char const*>(&number), sizeof number);
-}
-void Bytes::put(double number) {
-  text_.append(reinterpret_cast<char const*>(&number), sizeof number);
-}
-void Bytes::put(std::string_view text) {
-  put(std::int64_t(text.size()));
-  text_.append(text);
-}
-void Bytes::take(void* to, std::size_t size) {
-  if (text_.size() - at_ < size) throw std::invalid_argument("bytes of statistics are too short");
-  std::memcpy(to, text_.data() + at_, size);
-  at_ += size;
-}
-std::int64_t Bytes::whole() {
-  std::int64_t number;
-  take(&number, sizeof number);
-  return number;
-}
-double Bytes::number() {
-  double number;
-  take(&number, sizeof number);
-  return number;
-}
-std::string Bytes::text() {
-  std::int64_t const size = whole();
-  if (size < 0 || text_.size() - at_ < std::size_t(size)) throw std::invalid_argument("bytes of statistics are torn");
-  std::string read = text_.substr(at_, std::size_t(size));
-  at_ += std::size_t(size);
-  return read;
-}
-
 namespace {
-constexpr int mantissa_bits = 52, kept_bits = 7;
-constexpr double least = 1e-300;  // a normal number: its bits are exponent and mantissa
+
+constexpr int dropped_bits = 52 - 7;  // of the mantissa: a power of two is cut into 2^7 bins
+constexpr double least = 1e-300;      // a normal number: its bits are exponent and mantissa
+
+constexpr std::int64_t leading_bits(double size) {
+  return std::bit_cast<std::int64_t>(size) >> dropped_bits;
+}
+/// The key of `least` is 1.
+constexpr std::int64_t before = leading_bits(least) - 1;
+
 }  // namespace
 
 /// The leading bits of |value|, counted from those of the least, with the value's sign.
 std::int64_t Histogram::key_of(double value) {
   double const size = std::abs(value);
   if (size < least) return 0;
-  static std::int64_t const before = (std::bit_cast<std::int64_t>(least) >> (mantissa_bits - kept_bits)) - 1;
-  std::int64_t const key = (std::bit_cast<std::int64_t>(size) >> (mantissa_bits - kept_bits)) - before;
+  std::int64_t const key = leading_bits(size) - before;
   return value < 0 ? -key : key;
 }
 /// The lower end of the bin of a positive key.
 double Histogram::edge(std::int64_t key) {
-  std::int64_t const before = (std::bit_cast<std::int64_t>(least) >> (mantissa_bits - kept_bits)) - 1;
-  return std::bit_cast<double>((key + before) << (mantissa_bits - kept_bits));
+  return std::bit_cast<double>((key + before) << dropped_bits);
 }
 Histogram::Bin Histogram::bin_at(std::int64_t key, std::int64_t count) {
   if (key == 0) return {0, 0, count};

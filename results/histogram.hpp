@@ -2,32 +2,11 @@
 /// Histograms that add up: whole numbers of values in bins that are the same for everybody, so that any order and any
 /// grouping of the data gives the same counts, and the memory does not depend on how many there are.
 #include <cstdint>
-#include <string>
-#include <string_view>
 #include <vector>
 
+#include "results/bytes.hpp"
+
 namespace polhode::results {
-
-/// Plain numbers and texts as bytes, written and read in the same order: what ranks of one build send each other.
-class Bytes {
- public:
-  Bytes() = default;
-  explicit Bytes(std::string text) : text_(std::move(text)) {}
-  void put(std::int64_t number);
-  void put(double number);
-  void put(std::string_view text);
-  /// They throw std::invalid_argument at the end of the bytes.
-  std::int64_t whole();
-  double number();
-  std::string text();
-  bool at_end() const { return at_ == text_.size(); }
-  std::string const& all() const { return text_; }
-
- private:
-  void take(void* to, std::size_t size);
-  std::string text_;
-  std::size_t at_ = 0;
-};
 
 /// Log-linear bins: each power of two in 128 equal parts, so a bin is at most 1/128 = 0.8% wide; zeros have a bin of
 /// their own, negative values mirror the positive ones. Values up to the greatest double; below 1e-300 they are 0.
@@ -35,7 +14,7 @@ class Bytes {
 class Histogram {
  public:
   struct Bin {
-    double low, high;  ///< low <= |value| < high; both 0 for zeros
+    double low, high;  ///< low < high, except for zeros: both 0. The end nearer to 0 belongs to the bin
     std::int64_t count;
   };
 
