@@ -4,8 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <boost/math/distributions/students_t.hpp>
 #include <cmath>
-#include <iterator>
 
 namespace polhode::results {
 namespace {
@@ -54,10 +54,7 @@ Stretch longest_agreement(std::vector<double> const& slopes, double agreement) {
 
 /// Two-sided 95% quantile of Student's t.
 double student(std::size_t freedom) {
-  static constexpr double table[] = {12.706, 4.303, 3.182, 2.776, 2.571, 2.447, 2.365, 2.306, 2.262, 2.228};
-  if (freedom <= std::size(table)) return table[freedom - 1];
-  auto const n = static_cast<double>(freedom);
-  return 1.96 + 2.4 / n + 3.0 / (n * n);  // within 0.005 from 10 on
+  return boost::math::quantile(boost::math::students_t(static_cast<double>(freedom)), 0.975);
 }
 
 OrderFit least_squares(std::vector<OrderPoint> const& points) {
