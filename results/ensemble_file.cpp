@@ -2,13 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "results/shallow.hpp"
-#include "results/store.hpp"
+#include "results/whole_file.hpp"
 
 namespace polhode::results {
 namespace {
@@ -30,9 +28,12 @@ std::vector<std::int64_t> integers(Json const& json) {
   for (Json const& one : json) all.push_back(integer(one));
   return all;
 }
+SampleValue sample_from(Json const& json) {
+  return {json.at("value").get<double>(), integer(json.at("sample"))};
+}
 std::optional<SampleValue> sample_or_null(Json const& json) {
   if (json.is_null()) return {};
-  return SampleValue{json.at("value").get<double>(), integer(json.at("sample"))};
+  return sample_from(json);
 }
 
 EnsembleMetric metric_from(std::string const& name, Json const& json) {
@@ -50,7 +51,7 @@ EnsembleMetric metric_from(std::string const& name, Json const& json) {
   for (Json const& q : json.at("quantiles"))
     metric.quantiles.push_back({q.at("p").get<double>(), number_or_null(q.at("value")), number_or_null(q.at("low")),
                                 number_or_null(q.at("high"))});
-  for (Json const& worst : json.at("worst")) metric.worst.push_back(sample_or_null(worst).value());
+  for (Json const& worst : json.at("worst")) metric.worst.push_back(sample_from(worst));
   for (Json const& bin : json.at("histogram"))
     metric.histogram.push_back({bin.at(0).get<double>(), bin.at(1).get<double>(), integer(bin.at(2))});
   return metric;
@@ -96,22 +97,11 @@ Ensemble ensemble_from(std::string const& text) {
     return decoded(Json::parse(text, shallow));
   } catch (Json::exception const& error) {
     throw std::invalid_argument(fmt::format("is not what `polhode ensemble --out DIR` writes: {}", error.what()));
-  } catch (std::bad_optional_access const&) {
-    throw std::invalid_argument("worst: must hold samples");
   }
 }
 
 std::optional<Ensemble> read_ensemble(std::filesystem::path const& folder) {
-  std::filesystem::path const file = folder / ensemble_file;
-  if (!std::filesystem::exists(file)) return {};
-  std::ifstream in(file, std::ios::binary);
-  std::string const text(std::istreambuf_iterator<char>(in), {});
-  if (!in) throw StoreError(fmt::format("{}: cannot be read", file.string()));
-  try {
-    return ensemble_from(text);
-  } catch (std::invalid_argument const& error) {
-    throw StoreError(fmt::format("{}: {}", file.string(), error.what()));
-  }
+  return read_if_there(folder / ensemble_file, ensemble_from);
 }
 
 }  // namespace polhode::results

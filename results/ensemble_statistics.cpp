@@ -188,6 +188,7 @@ nlohmann::ordered_json EnsembleStatistics::json() const {
     return value ? Json{{"value", value->value}, {"sample", value->sample}} : Json(nullptr);
   };
   Json all{{"samples", samples_}};
+  all["endings"] = Json::object();
   for (auto const& [name, ending] : endings_)
     all["endings"][name] = {{"count", ending.count}, {"first_samples", ending.first}};
   all["metrics"] = Json::object();
