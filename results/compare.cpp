@@ -10,6 +10,7 @@
 #include <set>
 
 #include "results/golden.hpp"
+#include "results/meta.hpp"
 #include "results/run_name.hpp"
 #include "results/statistics.hpp"
 
@@ -22,11 +23,6 @@ struct Set {
   std::vector<Record const*> records;
   std::map<std::string, Record const*> by_cell;
 };
-
-std::string entry_of(Meta const& meta, std::string const& key) {
-  auto const found = meta.find(key);
-  return found == meta.end() ? "" : found->second;
-}
 
 /// What times depend on. The compiler is no part of it: it may be what is compared.
 std::string machine_of(Meta const& meta) {
@@ -109,14 +105,9 @@ double log_ratio(double a, double b, double floor) {
 
 void compare_columns(Comparison& to, Record const& a, Record const& b) {
   GoldenLine const before = golden_of(a), now = golden_of(b);
-  auto const value = [](GoldenLine const& line, std::string const& column) {
-    auto const found = line.columns.find(column);
-    return found == line.columns.end() ? std::nullopt : std::optional(found->second);
-  };
   for (std::string const& column : golden_columns()) {
-    ColumnChange change{
-        named(b), column,        default_tolerance(column).rel.has_value(), value(before, column), value(now, column),
-        {},       Trend::changed};
+    ColumnChange change{named(b),           column, is_count(column), before.column(column),
+                        now.column(column), {},     Trend::changed};
     if (!change.a && !change.b) continue;
     if (change.a && change.b) {
       double const from = *change.a, to_value = *change.b;

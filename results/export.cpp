@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "results/meta.hpp"
 #include "results/run_name.hpp"
 
 namespace polhode::results {
@@ -27,11 +28,6 @@ std::string csv_value(Json const& value) {
   if (value.is_null()) return "";
   if (value.is_string()) return quoted(value.get<std::string>());
   return quoted(value.dump(-1, ' ', false, Json::error_handler_t::replace));
-}
-
-std::string entry_of(Meta const& meta, std::string const& key) {
-  auto const found = meta.find(key);
-  return found == meta.end() ? "" : found->second;
 }
 
 std::vector<Record const*> timed_runs(Contents const& contents) {

@@ -3,17 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
+#include <array>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <system_error>
+#include <sstream>
 
 #include "results/run_name.hpp"
 #include "results/shallow.hpp"
-#include "results/store.hpp"
 #include "results/whole_file.hpp"
 
 namespace polhode::results {
@@ -24,11 +22,13 @@ using Json = nlohmann::ordered_json;
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-bool is_count(std::string_view column) {
-  static std::set<std::string_view> const counts{"steps",      "rejected",         "evaluations", "jacobians",
+constexpr std::array<std::string_view, 7> counts{"steps",      "rejected",         "evaluations", "jacobians",
                                                  "iterations", "controller_calls", "projections"};
-  return counts.contains(column);
-}
+constexpr std::array<std::string_view, 15> errors_and_drifts{
+    "norm_drift_raw_max",  "norm_drift_max",      "norm_drift_final",    "norm_drift_rms",
+    "attitude_error_max",  "attitude_error_end",  "attitude_error_l2",   "rate_error_max",
+    "rate_error_end",      "energy_drift_max",    "momentum_drift_max",  "momentum_direction_max",
+    "position_defect_max", "velocity_defect_max", "multiplier_error_max"};
 
 /// As many digits as tell something: the rest would change with every compiler.
 double rounded(double number) {
@@ -51,12 +51,12 @@ double multiple(double difference, double allowed) {
 Json to_json(GoldenLine const& line) {
   Json json{{"cell", line.cell}, {"name", line.name}, {"status", line.status}};
   for (std::string const& column : golden_columns()) {
-    auto const found = line.columns.find(column);
-    if (found == line.columns.end()) continue;
+    auto const value = line.column(column);
+    if (!value) continue;
     if (is_count(column)) {
-      json[column] = static_cast<std::int64_t>(found->second);
+      json[column] = static_cast<std::int64_t>(*value);
     } else {
-      json[column] = found->second;
+      json[column] = *value;
     }
   }
   return json;
@@ -97,9 +97,25 @@ void check_head(std::string const& text) {
   }
 }
 
-std::optional<double> column_of(GoldenLine const& line, std::string const& column) {
-  auto const found = line.columns.find(column);
-  return found == line.columns.end() ? std::nullopt : std::optional(found->second);
+/// The lines of a golden file. Throws StoreError with file and line.
+std::vector<GoldenLine> lines_from(std::string const& text, fs::path const& file) {
+  std::vector<GoldenLine> lines;
+  std::set<std::string> seen;
+  std::istringstream in(text);
+  std::string line;
+  for (std::size_t number = 1; std::getline(in, line); ++number) {
+    try {
+      if (number == 1) {
+        check_head(line);
+        continue;
+      }
+      lines.push_back(line_from(line));
+      if (!seen.insert(lines.back().cell).second) throw std::invalid_argument("cell: stands on an earlier line, too");
+    } catch (std::invalid_argument const& error) {
+      throw StoreError(fmt::format("{}:{}: {}", file.string(), number, error.what()));
+    }
+  }
+  return lines;
 }
 
 std::string shown(std::optional<double> value) {
@@ -113,36 +129,28 @@ std::string changes_of(GoldenLine const& before, GoldenLine const& after) {
   };
   note("status", before.status, after.status);
   for (std::string const& column : golden_columns()) {
-    note(column, shown(column_of(before, column)), shown(column_of(after, column)));
+    note(column, shown(before.column(column)), shown(after.column(column)));
   }
   return text;
 }
 
 }  // namespace
 
+std::optional<double> GoldenLine::column(std::string const& name_of_column) const {
+  auto const found = columns.find(name_of_column);
+  return found == columns.end() ? std::nullopt : std::optional(found->second);
+}
+
+bool is_count(std::string_view column) {
+  return std::ranges::find(counts, column) != counts.end();
+}
+
 std::vector<std::string> const& golden_columns() {
-  static std::vector<std::string> const columns{"steps",
-                                                "rejected",
-                                                "evaluations",
-                                                "jacobians",
-                                                "iterations",
-                                                "controller_calls",
-                                                "projections",
-                                                "norm_drift_raw_max",
-                                                "norm_drift_max",
-                                                "norm_drift_final",
-                                                "norm_drift_rms",
-                                                "attitude_error_max",
-                                                "attitude_error_end",
-                                                "attitude_error_l2",
-                                                "rate_error_max",
-                                                "rate_error_end",
-                                                "energy_drift_max",
-                                                "momentum_drift_max",
-                                                "momentum_direction_max",
-                                                "position_defect_max",
-                                                "velocity_defect_max",
-                                                "multiplier_error_max"};
+  static std::vector<std::string> const columns = [] {
+    std::vector<std::string> all(counts.begin(), counts.end());
+    all.insert(all.end(), errors_and_drifts.begin(), errors_and_drifts.end());
+    return all;
+  }();
   return columns;
 }
 
@@ -187,28 +195,8 @@ double deviation(Tolerance const& tolerance, std::optional<double> golden, std::
 }
 
 std::vector<GoldenLine> read_golden(fs::path const& file) {
-  std::error_code ignored;
-  if (!fs::exists(file, ignored)) return {};
-  errno = 0;
-  std::ifstream in(file, std::ios::binary);
-  if (!in || fs::is_directory(file)) throw StoreError(fmt::format("{}: cannot be read", file.string()));
-  std::vector<GoldenLine> lines;
-  std::set<std::string> seen;
-  std::string text;
-  for (std::size_t number = 1; std::getline(in, text); ++number) {
-    try {
-      if (number == 1) {
-        check_head(text);
-        continue;
-      }
-      lines.push_back(line_from(text));
-      if (!seen.insert(lines.back().cell).second) throw std::invalid_argument("cell: stands on an earlier line, too");
-    } catch (std::invalid_argument const& error) {
-      throw StoreError(fmt::format("{}:{}: {}", file.string(), number, error.what()));
-    }
-  }
-  if (in.bad()) throw StoreError(fmt::format("{}: cannot be read to its end", file.string()));
-  return lines;
+  auto const parse = [&](std::string const& text) { return lines_from(text, file); };
+  return read_if_there(file, parse).value_or(std::vector<GoldenLine>());
 }
 
 void write_golden(fs::path const& file, std::string const& suite, std::vector<GoldenLine> const& lines) {
@@ -218,12 +206,11 @@ void write_golden(fs::path const& file, std::string const& suite, std::vector<Go
 }
 
 GoldenLine settled(GoldenLine const& before, GoldenLine const& now) {
-  bool const same = before.status == now.status;
-  if (!same) return now;
+  if (before.status != now.status) return now;
   GoldenLine line = now;
   for (std::string const& column : golden_columns()) {
-    auto const golden = column_of(before, column);
-    bool const agrees = deviation(default_tolerance(column), golden, column_of(now, column)) <= 1;
+    auto const golden = before.column(column);
+    bool const agrees = deviation(default_tolerance(column), golden, now.column(column)) <= 1;
     if (golden && agrees) line.columns[column] = *golden;
   }
   return line;

@@ -21,10 +21,15 @@ struct GoldenLine {
   std::string name;  ///< run_name of the cell, for readers
   std::string status;
   std::map<std::string, double> columns;  ///< those that are not null; errors and drifts with 6 digits
+
+  /// The value of a column, or null.
+  std::optional<double> column(std::string const& name_of_column) const;
 };
 
-/// The names of the golden columns, in the order in which they are written.
+/// The names of the golden columns, in the order in which they are written: counts, then errors and drifts.
 std::vector<std::string> const& golden_columns();
+/// True for a column that counts: steps, evaluations and the like.
+bool is_count(std::string_view column);
 
 GoldenLine golden_of(Record const& record);
 
