@@ -1,26 +1,19 @@
-/// Records in other files: CSV and Google Benchmark JSON, and several folders as one.
+/// Records in other files: CSV and Google Benchmark JSON.
 #include "results/export.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <functional>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "results/merge.hpp"
 #include "results/run_name.hpp"
 #include "tests/made_up_record.hpp"
 
 namespace polhode::results {
 namespace {
 
-namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using testing::ElementsAre;
 using testing::HasSubstr;
@@ -171,131 +164,6 @@ TEST(ExportBenchmark, WhatWasNotTimedOrIsOlderIsLeftOut) {
   auto const contents = contents_of({record_of("rk4", 0.1), untimed, record_of("rk4", 0.1, "older")});
   EXPECT_EQ(Json::parse(benchmark_json_text(contents)).at("benchmarks").size(), 6u) << "one run";
   EXPECT_EQ(left_out_of_benchmarks(contents), 2u);
-}
-
-// --- Merge -----------------------------------------------------------------------------------------------------------
-
-std::string text_of(fs::path const& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-class Merge : public testing::Test {
- protected:
-  void SetUp() override {
-    std::string name = testing::TempDir() + "polhode_merge_XXXXXX";
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    root = name;
-  }
-  void TearDown() override { fs::remove_all(root); }
-
-  /// A folder with one file of these records, each with a begin and a history.
-  fs::path folder(std::string const& name, std::vector<Record> const& records, std::string const& build = "b") {
-    fs::create_directories(root / name);
-    Writer writer(root / name / "run-1.jsonl", {{"build", build}, {"host", name}});
-    for (Record const& record : records) {
-      writer.begin(record.cell, record.build);
-      writer.series({record.cell, "drift", {"t"}, {"s"}, {{double(*record.steps)}}});
-      writer.run(record);
-    }
-    return root / name;
-  }
-  std::string error_of(std::vector<fs::path> const& folders) {
-    try {
-      merge(root / "out", folders);
-    } catch (StoreError const& error) {
-      return error.what();
-    }
-    return "nothing was thrown";
-  }
-
-  fs::path root;
-};
-
-TEST_F(Merge, ShardsBecomeOneFolder) {
-  auto const a = folder("a", {record_of("rk4", 0.1), record_of("rk4", 0.2)});
-  auto const b = folder("b", {record_of("gauss2", 0.1)});
-  std::ofstream(a / "suite.toml") << "name = 'x'\n";
-  std::ofstream(b / "suite.toml") << "name = 'x'\n";
-  MergeSummary const summary = merge(root / "out", {a, b});
-  EXPECT_EQ(summary.folders, 2u);
-  EXPECT_EQ(summary.files, 2u);
-  EXPECT_EQ(summary.records, 3u);
-  EXPECT_EQ(summary.repeated, 0u);
-  Contents const contents = read(root / "out");
-  EXPECT_EQ(contents.records.size(), 3u);
-  EXPECT_EQ(contents.series.size(), 3u);
-  ASSERT_EQ(contents.metas.size(), 2u) << "provenance stays with its records";
-  EXPECT_EQ(contents.metas[0].at("host"), "a");
-  EXPECT_EQ(contents.metas[1].at("host"), "b");
-  EXPECT_EQ(text_of(root / "out" / "suite.toml"), "name = 'x'\n");
-}
-
-TEST_F(Merge, OfEqualRunsTheLastIsKeptAndTheOthersCounted) {
-  Record const first = record_of("rk4", 0.1);
-  Record second = first;
-  second.steps = 501;
-  Record third = first;
-  third.steps = 502;
-  auto const a = folder("a", {first, second});  // twice in one file
-  auto const b = folder("b", {third, record_of("rk4", 0.2)});
-  MergeSummary const summary = merge(root / "out", {a, b});
-  EXPECT_EQ(summary.repeated, 2u);
-  EXPECT_EQ(summary.records, 2u);
-  Contents const contents = read(root / "out");
-  ASSERT_EQ(contents.records.size(), 2u);
-  EXPECT_EQ(contents.repeated, 0u);
-  EXPECT_EQ(contents.records[0].steps, 502);
-  EXPECT_EQ(contents.series[0].rows[0][0], 502) << "its history, too";
-  // In the other order, the last is another.
-  merge(root / "other", {b, a});
-  for (Record const& record : read(root / "other").records) EXPECT_EQ(record.steps, record.of.h == 0.1 ? 501 : 500);
-}
-
-TEST_F(Merge, RunsOfTwoBuildsAreTwoRuns) {
-  auto const a = folder("a", {record_of("rk4", 0.1, "b")}, "b");
-  auto const b = folder("b", {record_of("rk4", 0.1, "c")}, "c");
-  EXPECT_EQ(merge(root / "out", {a, b}).records, 2u);
-  EXPECT_EQ(read(root / "out").records.size(), 2u);
-}
-
-TEST_F(Merge, ABeginWithoutRunIsKeptUnlessItRanElsewhere) {
-  auto const a = folder("a", {record_of("rk4", 0.1)});
-  Record const crashed = record_of("rk4", 0.2);
-  Record const elsewhere = record_of("rk4", 0.4);
-  {
-    Writer writer(a / "run-2.jsonl", {{"build", "b"}});
-    writer.begin(crashed.cell, "b");
-    writer.begin(elsewhere.cell, "b");
-  }
-  merge(root / "out", {a, folder("b", {elsewhere})});
-  EXPECT_THAT(read(root / "out").unfinished, ElementsAre(crashed.cell));
-}
-
-TEST_F(Merge, DamageIsRefusedWithItsLineAndNothingIsWritten) {
-  auto const a = folder("a", {record_of("rk4", 0.1)});
-  auto const b = folder("b", {record_of("rk4", 0.2)});
-  std::ofstream(b / "run-1.jsonl", std::ios::app) << "{\"schema\":1}\n";
-  EXPECT_THAT(error_of({a, b}), HasSubstr("b/run-1.jsonl:5: kind: missing"));
-  EXPECT_FALSE(fs::exists(root / "out"));
-}
-
-TEST_F(Merge, ATornLineAndAFileWithoutMetaAreForgiven) {
-  auto const a = folder("a", {record_of("rk4", 0.1)});
-  std::ofstream(a / "run-1.jsonl", std::ios::app) << "{\"schema\":1,";
-  std::ofstream(a / "run-2.jsonl") << "";
-  EXPECT_EQ(merge(root / "out", {a}).records, 1u);
-}
-
-TEST_F(Merge, WhatDoesNotFitIsRefused) {
-  auto const a = folder("a", {record_of("rk4", 0.1)});
-  auto const b = folder("b", {record_of("rk4", 0.2)});
-  std::ofstream(a / "suite.toml") << "name = 'x'\n";
-  std::ofstream(b / "suite.toml") << "name = 'y'\n";
-  EXPECT_THAT(error_of({a, b}), HasSubstr("merge results of one suite"));
-  EXPECT_THAT(error_of({a, root / "nowhere"}), HasSubstr("nowhere: no such folder"));
-  merge(root / "out", {a});
-  EXPECT_THAT(error_of({b}), HasSubstr("out: holds records already"));
 }
 
 }  // namespace
