@@ -42,7 +42,7 @@ class Expansion {
     auto segment = expand<Quad, 32>(field_, state_, t, Quad(next - t), tolerance);
     bool const useful = segment.h > 1e-9 * t_end_ || segment.h >= next - t;
     if (!useful)
-      throw ReferenceError(
+      throw Uncertified(
           fmt::format("{}: the Taylor series has no useful radius of convergence at t = {} s", name_, double(t)));
     bool const arrived = segment.h >= next - t;
     std::vector<int> const crossed = first_events(segment);
@@ -135,14 +135,27 @@ QuadState Reference::at(double t) const {
   return state_of(values, layout_);
 }
 
+std::string reference_subject(results::Cell const& cell) {
+  std::string text =
+      fmt::format("problem={};variant={};t_end={:.17g};seed={}", cell.problem, cell.variant, cell.t_end, cell.seed);
+  for (auto const& [name, values] : cell.set) text += fmt::format(";{}={:.17g}", name, fmt::join(values, ","));
+  return text;
+}
+
+std::string reference_id(results::Cell const& cell) {
+  return results::hash_of(reference_subject(cell));
+}
+
+namespace {
+
+/// How far two states are apart: the greatest angle between the attitudes of the same body [rad]; without attitudes,
+/// the greatest distance of the rates.
 double distance_between(QuadState const& a, QuadState const& b, Layout const& layout) {
   Quad most = 0;
   for (std::size_t i = 0; i < a.size(); ++i)
     most = max_of(most, layout.attitude ? angle_between(a[i].q, b[i].q) : length(a[i].omega - b[i].omega));
   return double(most);
 }
-
-namespace {
 
 /// Keeps the states at stops.
 template <Space M>
@@ -157,8 +170,7 @@ struct KeepStops {
   }
 };
 
-}  // namespace
-
+/// States of the same problem at its stops, by 8-stage Gauss on S3 with `divisions` steps from stop to stop.
 std::vector<QuadState> solve_by_gauss(ChosenProblem const& problem, Schedule const& schedule, int divisions) {
   std::vector<Stop> const stops = stops_of(schedule);
   double const h = (stops[1].time - stops[0].time) / divisions;
@@ -169,25 +181,12 @@ std::vector<QuadState> solve_by_gauss(ChosenProblem const& problem, Schedule con
         auto stepper = Gauss<8>{}.bind(*field, FixedStep{h}, NormPolicy::none);
         Point<M> x = field->initial();
         if (RunLoop(*field, stepper, h, true).go(x, stops, KeepStops<M>{states}) != Status::ok)
-          throw ReferenceError(fmt::format("{}: Gauss in quadruple precision diverged after t = {} s",
-                                           problem.info().name, stops[states.size() - 1].time));
+          throw Uncertified(fmt::format("{}: Gauss in quadruple precision diverged after t = {} s", problem.info().name,
+                                        stops[states.size() - 1].time));
       },
       in_quad);
   return states;
 }
-
-std::string reference_subject(results::Cell const& cell) {
-  std::string text =
-      fmt::format("problem={};variant={};t_end={:.17g};seed={}", cell.problem, cell.variant, cell.t_end, cell.seed);
-  for (auto const& [name, values] : cell.set) text += fmt::format(";{}={:.17g}", name, fmt::join(values, ","));
-  return text;
-}
-
-std::string reference_id(results::Cell const& cell) {
-  return results::hash_of(reference_subject(cell));
-}
-
-namespace {
 
 /// The state of a problem that has a closed form, as a function of time [s]: its own, or that of a free body in
 /// principal axes. Empty for any other problem, and for initial data or signs that belong to no physical body.
@@ -200,10 +199,6 @@ std::function<QuadState(Quad)> closed_form_of(ChosenProblem const& problem) {
   return [exact](Quad t) { return QuadState{{.q = exact.at(t).first}}; };
 }
 
-}  // namespace
-
-namespace {
-
 constexpr double good_enough = 1e-28;  // [rad]; a reference may be worse, but then no finer step helps
 constexpr int most_halvings = 7;
 
@@ -211,7 +206,7 @@ constexpr int most_halvings = 7;
 std::vector<QuadState> try_gauss(ChosenProblem const& problem, Schedule const& schedule, int divisions) {
   try {
     return solve_by_gauss(problem, schedule, divisions);
-  } catch (ReferenceError const&) {
+  } catch (Uncertified const&) {
     return {};
   }
 }
@@ -270,6 +265,9 @@ Certificate certify(results::Cell const& cell, ChosenProblem const& problem, Sch
   return certificate;
 }
 
+namespace {
+
+/// Throws ReferenceError if the stored states, as far as it goes, are further from `reference` than the bar allows.
 void check_fresh(Certificate const& certificate, Reference const& reference, std::filesystem::path const& file) {
   // Round-off of two builds differs: a hundred units in the last place of quadruple precision are no disagreement.
   double const room = std::max(10 * certificate.bar, 1e-30);
@@ -283,6 +281,8 @@ void check_fresh(Certificate const& certificate, Reference const& reference, std
                     file.string(), certificate.times[k], apart));
   }
 }
+
+}  // namespace
 
 std::shared_ptr<UsableReference const> obtain(results::Cell const& cell, ChosenProblem const& problem,
                                               Schedule const& schedule, std::filesystem::path const& folder,

@@ -43,13 +43,6 @@ class Reference {
   std::vector<double> event_times_;
 };
 
-/// How far two states are apart: the greatest angle between the attitudes of the same body [rad]; without attitudes,
-/// the greatest distance of the rates.
-double distance_between(QuadState const& a, QuadState const& b, Layout const& layout);
-
-/// States of the same problem at its stops, by 8-stage Gauss on S3 with `divisions` steps from stop to stop.
-std::vector<QuadState> solve_by_gauss(ChosenProblem const& problem, Schedule const& schedule, int divisions);
-
 /// The canonical text of what a reference belongs to: a cell without its method.
 std::string reference_subject(results::Cell const& cell);
 /// Its hash, 16 hexadecimal digits.
@@ -58,9 +51,6 @@ std::string reference_id(results::Cell const& cell);
 /// Proves a reference by the second method. `cell` names the problem; only its physics is used.
 Certificate certify(results::Cell const& cell, ChosenProblem const& problem, Schedule const& schedule,
                     Reference const& reference);
-
-/// Throws ReferenceError if the stored states, as far as it goes, are further from `reference` than the bar allows.
-void check_fresh(Certificate const& certificate, Reference const& reference, std::filesystem::path const& file);
 
 /// A reference ready for use, and its bar.
 struct UsableReference {
