@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
-#include <vector>
 
 #include "integrators/ensemble.hpp"
 
@@ -33,17 +32,6 @@ void run_ensemble_on_threads(int threads, Method const& method, EnsembleRun cons
   on_threads(threads, chunks_in(count), [&](std::int64_t k) {
     run_ensemble<T>(method, run, chunk_of(count, k), make, deliver, watch, registers);
   });
-}
-
-/// of(chunk 0) + of(chunk 1) + ..., by += from left to right: statistics of `count` bodies.
-template <class F>
-auto sum_over_chunks(int threads, std::int64_t count, F const& of) {
-  using Sum = decltype(of(Bodies{}));
-  std::vector<Sum> parts(std::size_t(chunks_in(count)));
-  on_threads(threads, chunks_in(count), [&](std::int64_t k) { parts[std::size_t(k)] = of(chunk_of(count, k)); });
-  Sum sum{};
-  for (Sum const& part : parts) sum += part;
-  return sum;
 }
 
 }  // namespace polhode::bench

@@ -104,20 +104,4 @@ MethodOn<M> const& method_named(std::string_view name) {
   throw std::out_of_range("no integrator " + std::string(name));
 }
 
-/// Calls f(bound stepper) with the method driven as the plan says; with dense output, if its adaptive stepper has it.
-template <class Method, Problem P, class F>
-auto with_stepper(Method const& method, P const& problem, Plan const& plan, F f) {
-  constexpr bool fixed = RunsFixed<Method, P>, adaptive = RunsAdaptive<Method, P>;
-  if constexpr (fixed)
-    if (!adaptive || std::holds_alternative<FixedStep>(plan.control))
-      return f(method.bind(problem, std::get<FixedStep>(plan.control), plan.policy));
-  if constexpr (adaptive) {
-    Adaptive const& control = std::get<Adaptive>(plan.control);
-    if constexpr (requires { method.bind_dense(problem, control, plan.policy); })
-      return f(method.bind_dense(problem, control, plan.policy));
-    else
-      return f(method.bind(problem, control, plan.policy));
-  }
-}
-
 }  // namespace polhode::bench

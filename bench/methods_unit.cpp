@@ -9,6 +9,22 @@
 namespace polhode::bench {
 namespace {
 
+/// Calls f(bound stepper) with the method driven as the plan says; with dense output, if its adaptive stepper has it.
+template <class Method, Problem P, class F>
+auto with_stepper(Method const& method, P const& problem, Plan const& plan, F f) {
+  constexpr bool fixed = RunsFixed<Method, P>, adaptive = RunsAdaptive<Method, P>;
+  if constexpr (fixed)
+    if (!adaptive || std::holds_alternative<FixedStep>(plan.control))
+      return f(method.bind(problem, std::get<FixedStep>(plan.control), plan.policy));
+  if constexpr (adaptive) {
+    Adaptive const& control = std::get<Adaptive>(plan.control);
+    if constexpr (requires { method.bind_dense(problem, control, plan.policy); })
+      return f(method.bind_dense(problem, control, plan.policy));
+    else
+      return f(method.bind(problem, control, plan.policy));
+  }
+}
+
 template <Space M, class Method>
 Outcome solve(Erased<M>& problem, Plan const& plan, Watch<M>& watch) {
   return with_stepper(Method{}, problem, plan, [&](auto stepper) {

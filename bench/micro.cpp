@@ -57,6 +57,16 @@ double step_of(ProblemEntry const& entry) {
   return sampled ? entry.info().step : std::min(step_size, entry.info().step);
 }
 
+/// The cell of a solve from the catalogue's names alone.
+results::Cell cell_of(std::string_view problem, std::string_view formulation, std::string_view integrator, double h) {
+  results::Cell cell;
+  cell.problem = problem;
+  cell.formulation = formulation;
+  cell.integrator = integrator;
+  cell.h = h;
+  return cell;
+}
+
 /// Every typed fixed-step method on every problem and formulation.
 void register_steps() {
   for (ProblemEntry const* entry : all_problems())
@@ -64,17 +74,12 @@ void register_steps() {
       for (IntegratorWord const& word : vocabulary().integrators) {
         // a solve by the closed form is one value, not steps
         if (!word.fixed || !word.not_built.empty() || word.family == "exact") continue;
-        results::Cell cell;
-        cell.problem = entry->info().name;
-        cell.formulation = formulation;
-        cell.integrator = word.name;
-        cell.h = step_of(*entry);
-        PreparedCell const prepared = prepare(cell);
+        PreparedCell const prepared = prepare(cell_of(entry->info().name, formulation, word.name, step_of(*entry)));
         if (!prepared.refusal.empty()) continue;
         std::shared_ptr<TimedSolve> const solve = prepared.problem->timed(formulation, word.name, prepared.plan);
         if (!solve) continue;
-        double const steps = prepared.cell.t_end / *cell.h;
-        std::string const name = fmt::format("step/{}/{}/{}", cell.problem, formulation, word.name);
+        double const steps = prepared.cell.t_end / *prepared.cell.h;
+        std::string const name = fmt::format("step/{}/{}/{}", entry->info().name, formulation, word.name);
         benchmark::RegisterBenchmark(name.c_str(), [solve, steps](benchmark::State& state) {
           solve_cost(state, *solve, steps);
         })->Unit(benchmark::kMicrosecond);
@@ -90,11 +95,7 @@ void register_networks() {
   for (auto const& [formulation, integrator] :
        {std::pair{"quaternion", "rk4"}, {"s3", "cf4"}, {"quaternion", "gauss2"}})
     for (int const n : {5, 100, 1000, 10'000, most_craft}) {
-      results::Cell cell;
-      cell.problem = "quaternion_sync";
-      cell.formulation = formulation;
-      cell.integrator = integrator;
-      cell.h = h;
+      results::Cell cell = cell_of("quaternion_sync", formulation, integrator, h);
       cell.t_end = steps * h;
       cell.set["n"] = {double(n)};
       PreparedCell const prepared = prepare(cell);
@@ -106,16 +107,6 @@ void register_networks() {
         count_steps(state, double(most_craft) * steps);
       })->Unit(benchmark::kMillisecond);
     }
-}
-
-/// The cell of a solve from the catalogue's names alone.
-results::Cell cell_of(std::string_view problem, std::string_view formulation, std::string_view integrator, double h) {
-  results::Cell cell;
-  cell.problem = problem;
-  cell.formulation = formulation;
-  cell.integrator = integrator;
-  cell.h = h;
-  return cell;
 }
 
 /// The free body's field behind a virtual call at every evaluation.

@@ -1,6 +1,8 @@
 /// Everything that one problem of the catalogue needs compiled, apart from its races.
 /// POLHODE_PROBLEM is the problem's type, from POLHODE_PROBLEM_HEADER; the build makes one unit for each line of
 /// problems/catalog.hpp. POLHODE_RACED says that it has races.
+#include <algorithm>
+
 #include "bench/problems.hpp"
 #include "problems/dual_field.hpp"
 #include "problems/series_twin.hpp"
@@ -34,11 +36,9 @@ class Chosen final : public ChosenProblem {
   std::string no_reference() const override { return why_no_reference(definition_); }
   std::string warning() const override { return warning_of(definition_); }
   std::string refusal(std::string_view formulation) const override {
-    if (!written_in(formulation, FormulationsOf<D>{})) {
-      std::string const why = refusal_of(definition_, formulation);
-      return why.empty() ? "the problem is not written in this formulation" : why;
-    }
-    return refusal_of(definition_, formulation);
+    std::string const why = refusal_of(definition_, formulation);
+    bool const written = std::ranges::count(names_of(FormulationsOf<D>{}), formulation) > 0;
+    return why.empty() && !written ? "the problem is not written in this formulation" : why;
   }
   std::vector<Column> columns() const override { return definition_.columns(); }
   std::vector<ClaimResult> claims(History const& history) const override { return definition_.claims(history); }
@@ -91,10 +91,6 @@ class Chosen final : public ChosenProblem {
     if (!any) throw std::out_of_range("no run lives on the space of " + D::info().name);
     return std::move(*any);
   }
-  template <class... F>
-  static bool written_in(std::string_view name, Types<F...>) {
-    return ((F::name == name) || ...);
-  }
 
   static constexpr int most_for_jacobian = 500;  ///< numbers in a state
   D definition_;
@@ -104,16 +100,12 @@ class Entry final : public ProblemEntry {
  public:
   ProblemInfo const& info() const override { return D::info(); }
   std::vector<Parameter> parameters() const override { return defaults_.parameters(); }
-  std::vector<std::string_view> formulations() const override { return names(FormulationsOf<D>{}); }
+  std::vector<std::string_view> formulations() const override { return names_of(FormulationsOf<D>{}); }
   std::unique_ptr<ChosenProblem> choose(Choice const& choice) const override {
     return std::make_unique<Chosen>(choice);
   }
 
  private:
-  template <class... F>
-  static std::vector<std::string_view> names(Types<F...>) {
-    return {F::name...};
-  }
   mutable D defaults_{Choice{}};  // parameters() hands out references; nobody assigns through these
 };
 

@@ -3,14 +3,6 @@
 #include <stdexcept>
 
 namespace polhode::bench {
-namespace {
-
-template <class... F>
-std::vector<std::string_view> names(Types<F...>) {
-  return {F::name...};
-}
-
-}  // namespace
 
 ProblemEntry const& problem_named(std::string_view name) {
   for (ProblemEntry const* entry : all_problems())
@@ -19,7 +11,7 @@ ProblemEntry const& problem_named(std::string_view name) {
 }
 
 std::vector<std::string_view> formulation_names() {
-  return names(Formulations{});
+  return names_of(Formulations{});
 }
 
 }  // namespace polhode::bench

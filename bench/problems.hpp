@@ -82,7 +82,12 @@ class ProblemEntry {
 std::vector<ProblemEntry const*> const& all_problems();
 /// The problem of that name. Throws std::out_of_range.
 ProblemEntry const& problem_named(std::string_view name);
-/// The names of the formulations, in catalogue order.
+/// The names of the formulations of a list, in its order.
+template <class... F>
+std::vector<std::string_view> names_of(Types<F...>) {
+  return {F::name...};
+}
+/// The names of all formulations, in catalogue order.
 std::vector<std::string_view> formulation_names();
 
 namespace detail {

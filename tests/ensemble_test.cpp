@@ -230,17 +230,6 @@ TEST(EnsembleThreads, GiveTheSameBitsForAnyNumberOfThem) {
   auto const one = ends_by(1);
   for (int const threads : {2, 3, 7}) EXPECT_EQ(farthest(ends_by(threads), one), 0) << threads;
 }
-TEST(EnsembleThreads, SumsDoNotDependOnTheirNumber) {
-  auto const sum_by = [](int threads) {
-    return bench::sum_over_chunks(threads, many, [](Bodies const& chunk) {
-      double sum = 0;  // terms of many sizes: another order is another sum
-      for (std::int64_t k = chunk.first; k < chunk.last; ++k) sum += 1.0 / double(1 + k * k % 1013);
-      return sum;
-    });
-  };
-  for (int const threads : {2, 3, 7}) EXPECT_EQ(sum_by(threads), sum_by(1)) << threads;
-  EXPECT_EQ(bench::sum_over_chunks(2, 0, [](Bodies const&) { return 1.0; }), 0.0);
-}
 TEST(EnsembleThreads, HandOnTheFirstFailure) {
   auto const fail = [](std::int64_t k) {
     if (k == 3 || k == 8) throw std::runtime_error("part " + std::to_string(k));

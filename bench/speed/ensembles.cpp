@@ -155,7 +155,7 @@ void fused_peak(benchmark::State& state, Registers registers) {
     benchmark::DoNotOptimize(widest ? fuse_avx512(rounds) : fuse_avx2(rounds));
 #endif
   }
-  double const operations = 2.0 * 12 * double(rounds) * (widest ? 8 : 4);
+  double const operations = 2.0 * FusedPeak<64>::chains * double(rounds) * (widest ? 8 : 4);
   state.counters["flops"] = benchmark::Counter(operations * double(state.iterations()), benchmark::Counter::kIsRate);
   count_steps(state, body_steps);
 }
