@@ -1,6 +1,6 @@
 #pragma once
 /// Every number of a problem is a named parameter with a unit, a default and a rule; `--set` and suite files change it.
-#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
@@ -92,18 +92,26 @@ inline void Parameter::check(std::vector<double> const& values) const {
   if (rule_ == Rule::inertia) check_inertia(values);
 }
 
+namespace detail {
+/// Are all eigenvalues of a symmetric matrix positive? They are if the pivots of its L D L^T are.
+/// Source: Golub & Van Loan (2013), Matrix Computations, sec. 4.2
+inline bool is_positive_definite(double xx, double yy, double zz, double xy, double xz, double yz) {
+  double const second = yy - xy / xx * xy, below = yz - xy / xx * xz;
+  double const third = zz - xz / xx * xz - below / second * below;
+  return xx > 0 && second > 0 && third > 0;
+}
+}  // namespace detail
+
 inline void Parameter::check_inertia(std::vector<double> const& v) const {
-  Eigen::Matrix3d J = Eigen::Vector3d(v[0], v[1], v[2]).asDiagonal();
-  if (v.size() == 6) {
-    J(0, 1) = J(1, 0) = v[3];
-    J(0, 2) = J(2, 0) = v[4];
-    J(1, 2) = J(2, 1) = v[5];
-  }
-  Eigen::Vector3d const principal =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(J, Eigen::EigenvaluesOnly).eigenvalues();
-  if (!(principal[0] > 0)) refuse("principal moments of inertia must be greater than 0 kg m^2");
-  double const rounding = 1e-12 * principal[2];
-  if (principal[2] > principal[0] + principal[1] + rounding)
+  double const xx = v[0], yy = v[1], zz = v[2];
+  bool const full = v.size() == 6;
+  double const xy = full ? v[3] : 0, xz = full ? v[4] : 0, yz = full ? v[5] : 0;
+  if (!detail::is_positive_definite(xx, yy, zz, xy, xz, yz))
+    refuse("principal moments of inertia must be greater than 0 kg m^2");
+  // The eigenvalues of tr(J) 1 - 2 J are what two principal moments have in excess of the third: 0 for a lamina.
+  double const rounding = 1e-12 * std::max({xx, yy, zz});
+  if (!detail::is_positive_definite(yy + zz - xx + rounding, zz + xx - yy + rounding, xx + yy - zz + rounding, -2 * xy,
+                                    -2 * xz, -2 * yz))
     refuse("breaks the triangle inequality: no principal moment may exceed the sum of the other two");
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "bench/run_loop.hpp"
@@ -18,6 +19,20 @@ namespace {
 using test::expect_near;
 using test::in;
 using test::Random;
+
+// ---- The catalogue --------------------------------------------------------------------------------------------------
+
+template <class D>
+void check_pointing(D const& problem) {
+  std::string const& where = D::info().pointing;
+  auto const columns = problem.columns();
+  bool const is_shown = std::ranges::find(columns, where, &Column::name) != columns.end();
+  EXPECT_TRUE(where.empty() || where == angle_of_q || is_shown) << D::info().name << ": " << where;
+  if (is_shown) EXPECT_EQ(std::ranges::find(columns, where, &Column::name)->unit, "rad") << D::info().name;
+}
+TEST(Catalogue, WherePointingIsFoundExists) {
+  [&]<class... D>(Types<D...>) { (check_pointing(D(Choice{})), ...); }(Problems{});
+}
 
 // ---- Euler's equation -----------------------------------------------------------------------------------------------
 
@@ -172,6 +187,16 @@ TEST(Parameters, AnInertiaMustBelongToABody) {
   EXPECT_EQ(complaint(parameter, {1, 2}), "parameter inertia: takes 3 or 6 number(s), not 2");
   EXPECT_EQ(complaint(parameter, {10, 10, 10, 1, 0, 0}), "") << "principal moments 9, 10, 11";
   EXPECT_EQ(complaint(parameter, {10, 10, 10, 6, 0, 0}), triangle) << "principal moments 4, 10, 16";
+
+  // About n = (2, 1, 2) / 3 the moment `about`, across it 1.
+  auto const turned = [](double about) {
+    double const more = (about - 1) / 9;
+    return std::vector<double>{1 + 4 * more, 1 + more, 1 + 4 * more, 2 * more, 4 * more, 2 * more};
+  };
+  EXPECT_EQ(complaint(parameter, turned(2)), "") << "a lamina in any axes";
+  EXPECT_EQ(complaint(parameter, turned(2 + 1e-9)), triangle);
+  EXPECT_EQ(complaint(parameter, turned(1e-9)), "") << "a rod";
+  EXPECT_EQ(complaint(parameter, turned(-1e-9)), moments);
 }
 
 TEST(Parameters, ProblemsRefuseWhatTheirParametersRefuse) {
