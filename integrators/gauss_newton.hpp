@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "integrators/fixed_point.hpp"
 #include "integrators/gauss_tableau.hpp"
 #include "problems/problem.hpp"
 
@@ -47,27 +48,6 @@ class FactoredMatrix {
   std::vector<std::size_t> pivot_;
 };
 
-/// How many sweeps running none of the components changed less than ever; 2, the end, if nothing changed at all.
-/// Source: Hairer, McLachlan & Razakarivony (2008), BIT 48, 231, made stricter: by component, twice
-template <class V>
-POLHODE_INLINE int idle_after(V const& change, V& least, int idle) {
-  bool smaller = false, still = true;
-  V::each(
-      [&](auto& low, auto const& now) POLHODE_LAMBDA {
-        using S = std::decay_t<decltype(now)>;
-        still = still && now == S(0.0);
-        smaller = smaller || now < low;
-        low = now < low ? now : low;
-      },
-      least, change);
-  return still ? 2 : smaller ? 0 : idle + 1;
-}
-/// At rest through round-off the last change is tiny; at rest because the iteration diverges it is not.
-template <class S, class V>
-POLHODE_INLINE bool at_rest_by_rounding(V const& change, V const& size) {
-  return largest<S>(change) < S(1e-9) * largest<S>(size) + S(1e-12);
-}
-
 /// The equations of one step, Y_i = carry + sum_j mu_ij L_j with L_j = h b_j f(t + h c_j, Y_j): what Newton is told.
 /// Y counts from x in the chart around it.
 template <Space M>
@@ -106,11 +86,11 @@ class StageNewton<M> {
     differentiate(p, S(t + R(0.5) * h), x);
     assemble(h, step);
     for (Chart<M>& one : step.Y) one = step.carry;
-    S least(1e300);
     Chart<M> most;
     fill(most, 0.0);
     // One measure for all components: the corrections never come to 0, and their parts go on finding new minima.
-    for (int iteration = 0, idle = 0; iteration < most_iterations && idle < 2; ++iteration) {
+    AtRest<S> rest;
+    for (int iteration = 0; iteration < most_iterations && !rest; ++iteration) {
       for (std::size_t i = 0; i < stages_; ++i) {
         Chart<M> here = M::centre(x);
         add(here, step.Y[i]);
@@ -120,11 +100,9 @@ class StageNewton<M> {
       ++iterations;
       correct(step, most);
       if (!all_finite(most)) return false;
-      S const now = largest<S>(most);
-      idle = now == S(0.0) ? 2 : now < least ? 0 : idle + 1;
-      least = now < least ? now : least;
+      rest.see(largest<S>(most));
     }
-    return at_rest_by_rounding<S>(most, step.Y[0]);
+    return is_solved(largest<S>(most), largest<S>(step.Y[0]));
   }
 
  private:

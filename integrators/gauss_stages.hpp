@@ -174,8 +174,8 @@ class GaussMethod {
                                      GaussMemory<M>& memory, bool guessed, bool may_give_up) {
     auto& [place, start_slope, change, least, sum, rest, y, v] = room_;
     S early(0.0);
-    fill(least, 1e300);
-    for (int sweep = 0, idle = 0; sweep < most_sweeps && idle < 2; ++sweep) {
+    AtRestByComponent at_rest(least);
+    for (int sweep = 0; sweep < most_sweeps && !at_rest; ++sweep) {
       fill(change, 0.0);
       for (std::size_t i = 0; i < stages_; ++i) {
         for_each_body<M>(x, [&](auto const& at) POLHODE_LAMBDA {
@@ -197,13 +197,13 @@ class GaussMethod {
         scale(L_[i], hb[i]);
       }
       ++memory.iterations;
-      if (!guessed) idle = idle_after(change, least, idle);
+      if (!guessed) at_rest.see(change);
       guessed = false;
       if (sweep == 8) early = largest<S>(change);
       if (sweep == 12 && may_give_up && crawls(early, largest<S>(change))) [[unlikely]]
         return false;
     }
-    return at_rest_by_rounding<S>(change, Y_[0]);
+    return is_solved(largest<S>(change), largest<S>(Y_[0]));
   }
 
   /// Four sweeps, from `early` to `late`, brought less than a factor of 2.5 each, and it is not that of rounding

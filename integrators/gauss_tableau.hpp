@@ -88,12 +88,6 @@ inline GaussCoefficients const& gauss_coefficients(int s) {
   return all[std::size_t(s - 1)];
 }
 
-/// The same, the number of stages being part of the type.
-template <int s>
-struct GaussTableau : GaussCoefficients {
-  GaussTableau() : GaussCoefficients(s) {}
-};
-
 /// Coefficients in scalar R in the form that keeps the symplecticity condition exactly: mu_ii = 1/2, mu_ij + mu_ji = 1;
 /// and symmetry, too: mu_ij = mu_ji of the stages counted from the end.
 /// The step uses L_j = (h b_j) f(Y_j), Y_i = y + sum_j mu_ij L_j, y' = y + sum_j L_j: one table, never a and b apart.

@@ -10,6 +10,7 @@
 /// Use under torques of attitude and time over long times; not with steps of a radian and more.
 ///
 /// Source: Lee, Leok & McClamroch (2007), Comput. Methods Appl. Mech. Engrg. 196, 2907; the turn: moser_veselov.hpp
+#include "integrators/fixed_point.hpp"
 #include "integrators/moser_veselov.hpp"
 
 namespace polhode {
@@ -72,17 +73,17 @@ struct LieVariational2 {
     /// when the change has no new minimum twice running.
     template <Problem P, class M = typename P::Space, class S = typename M::Scalar>
     POLHODE_INLINE void find_torque(P const& p, S const& t, R const& half, Point<M>& x, Memory<M>& memory) const {
-      S change(0.0), least(1e300);
-      for (int sweep = 0, idle = 0; sweep < most_sweeps && idle < 2; ++sweep) {
+      S change(0.0);
+      AtRest<S> at_rest;
+      for (int sweep = 0; sweep < most_sweeps && !at_rest; ++sweep) {
         x.second = body.to_body(body.rate(memory.momentum + half * memory.torque));
         Vec3<S> const next = body.to_principal(p.torque(t, x));
         change = distance<S>(next, memory.torque);
         memory.torque = next;
         ++memory.iterations;
-        idle = change == S(0.0) ? 2 : change < least ? 0 : idle + 1;
-        if (change < least) least = change;
+        at_rest.see(change);
       }
-      if (!(change < S(1e-9) * largest<S>(memory.torque) + S(1e-12))) [[unlikely]]
+      if (!is_solved(change, largest<S>(memory.torque))) [[unlikely]]
         memory.unconverged = true;
     }
   };

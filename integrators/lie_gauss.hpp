@@ -21,7 +21,7 @@ struct MiddleGauss {
   std::array<std::array<R, s>, s> middle;
 
   MiddleGauss() {
-    GaussTableau<s> const exact;
+    GaussCoefficients const& exact = gauss_coefficients(s);
     for (std::size_t i = 0; i < s; ++i) {
       b[i] = R(exact.b[i]);
       c[i] = R(exact.c[i]);
@@ -82,8 +82,9 @@ struct LieGauss {
       slope(p, t, x, v, now);
       unroll<s>([&](auto i) POLHODE_LAMBDA { assign_scaled(L[i], hb[i], now); });
 
-      S change(0.0), least(1e300);
-      for (int sweep = 0, idle = 0; sweep < most_sweeps && idle < 2; ++sweep) {
+      S change(0.0);
+      AtRest<S> at_rest;
+      for (int sweep = 0; sweep < most_sweeps && !at_rest; ++sweep) {
         displace<M>(
             x,
             [&](auto& half, auto const& at) POLHODE_LAMBDA {
@@ -105,11 +106,9 @@ struct LieGauss {
           L[i] = now;
         }
         ++memory.iterations;
-        idle = change == S(0.0) ? 2 : change < least ? 0 : idle + 1;
-        if (change < least) least = change;
+        at_rest.see(change);
       }
-      // At rest through round-off the last change is tiny; at rest because the iteration diverges it is not.
-      if (!(change < S(1e-9) * largest<S>(L[0]) + S(1e-12))) [[unlikely]]
+      if (!is_solved(change, largest<S>(L[0]))) [[unlikely]]
         memory.unconverged = true;
 
       now = L[0];

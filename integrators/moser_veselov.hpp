@@ -16,6 +16,7 @@
 #include <span>
 
 #include "integrators/rigid_motion.hpp"
+#include "integrators/step_rotation.hpp"
 
 namespace polhode {
 
@@ -97,28 +98,16 @@ Vec3<S> modified_moments(Vec3<R> const& I, Vec3<S> const& L, R const& h, std::sp
 /// not converge: the step is too long.
 template <class S>
 bool moser_veselov_turn(Vec3<S> const& J, Vec3<S> const& v, Vec3<S>& c, std::int64_t& sweeps) {
-  using R = Real<S>;
   auto const times_J = [&J](Vec3<S> const& a) { return Vec3<S>{J.x * a.x, J.y * a.y, J.z * a.z}; };
-  S const enough(std::same_as<R, double> ? 1e-9 : 1e-18);  // convergence is quadratic
-  S const one(1.0), none(0.0);
   c = {v.x / J.x, v.y / J.y, v.z / J.z};
-  for (int sweep = 0; sweep < 25; ++sweep) {
-    Vec3<S> const Jc = times_J(c);
-    Vec3<S> const residual = (one + dot(c, c)) * v - Jc - cross(c, Jc);
-    auto const column = [&](Vec3<S> const& d) {
+  return newton(c, sweeps, [&](Vec3<S> const& at) {
+    Vec3<S> const Jc = times_J(at);
+    auto const slope = [&](Vec3<S> const& d) {
       Vec3<S> const Jd = times_J(d);
-      return Jd + cross(d, Jc) + cross(c, Jd) - (R(2.0) * dot(c, d)) * v;
+      return Jd + cross(d, Jc) + cross(at, Jd) - (Real<S>(2.0) * dot(at, d)) * v;
     };
-    Vec3<S> const g1 = column({one, none, none}), g2 = column({none, one, none}), g3 = column({none, none, one});
-    Vec3<S> const g23 = cross(g2, g3);
-    S const over = one / dot(g1, g23);
-    Vec3<S> const change =
-        over * Vec3<S>{dot(residual, g23), dot(g1, cross(residual, g3)), dot(g1, cross(g2, residual))};
-    add(c, change);
-    ++sweeps;
-    if (!(enough * largest<S>(c) < largest<S>(change))) return all_finite(c);
-  }
-  return false;
+    return solve(jacobian<S>(slope), (S(1.0) + dot(at, at)) * v - Jc - cross(at, Jc));
+  });
 }
 
 /// order 2, 4, 6, 8 or 10; implicit, no evaluation of the field; symmetric, symplectic
