@@ -98,18 +98,20 @@ class Recorder final : public Watch<M> {
     history_.times.push_back(t);
     history_.rows.push_back(std::move(row));
   }
-  /// Every body as `simulate` shows it; rates that are no state are those that the field commands.
+  /// Every body as `simulate` shows it; of attitudes alone the rates are no state: the field commands them.
   void add_state(double t, Point<M> const& x, std::vector<double>& row) {
-    Velocity<M> commands = shaped_like<Velocity<M>>(x);
-    if constexpr (PowerSpace<M>) problem_(t, x, commands);
-    int i = 0;
-    each_body<M>(x, [&]<class Body>(Point<Body> const& body) {
-      if constexpr (Attitude<Body>)
-        show_body<Body>(body, &commands[i++], row);
-      else
-        show_body<Body>(body, nullptr, row);
-    });
+    if constexpr (attitudes_alone) {
+      Velocity<M> commands = shaped_like<Velocity<M>>(x);
+      problem_(t, x, commands);
+      for (int i = 0; i < x.count(); ++i) show_body<typename M::Factor>(x[i], &commands[i], row);
+    } else {
+      each_body<M>(x, [&]<class Body>(Point<Body> const& body) { show_body<Body>(body, nullptr, row); });
+    }
   }
+  static constexpr bool attitudes_alone = [] {
+    if constexpr (PowerSpace<M>) return Attitude<typename M::Factor>;
+    return false;
+  }();
 
   Erased<M> const& problem_;
   std::size_t own_columns_;
