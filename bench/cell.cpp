@@ -115,15 +115,22 @@ void note_work(results::Record& record, PreparedCell const& prepared, Outcome co
   if (prepared.plan.policy != NormPolicy::none) record.projections = outcome.projections.count;
 }
 
+/// Why what was reached is no solution of the problem; empty if it may be one.
+std::string why_inaccurate(results::Record const& record) {
+  if (record.attitude_error_max.value_or(0) > 1)
+    return fmt::format("attitude error {:.2g} rad: no digit is right", *record.attitude_error_max);
+  if (record.norm_drift_max.value_or(0) > 1)
+    return fmt::format("norm drift {:.2g}: the state is no attitude", *record.norm_drift_max);
+  return "";
+}
+
 /// What a run that reached its end is worth.
 void note_worth(results::Record& record, PreparedCell const& prepared, Metrics const& metrics,
                 Trajectory const& trajectory) {
   metrics.fill(record);
   if (prepared.plan.policy != NormPolicy::none) record.projection_work = trajectory.outcome.projections.work;
-  if (record.attitude_error_max.value_or(0) > 1) {
-    record.status = results::Status::inaccurate;
-    record.reason = fmt::format("attitude error {:.2g} rad: no digit is right", *record.attitude_error_max);
-  }
+  record.reason = why_inaccurate(record);
+  if (!record.reason.empty()) record.status = results::Status::inaccurate;
   for (ClaimResult const& claim : prepared.problem->claims(trajectory.history)) {
     std::string const verdict = !claim.holds ? "no printed value" : *claim.holds ? "reproduced" : "not reproduced";
     record.claims[claim.name] = {claim.value, claim.published, verdict};
