@@ -91,6 +91,7 @@ class Coning {
   std::vector<Column> columns() const { return {{"coning_error", "rad"}}; }
   std::vector<ClaimResult> claims(History const& history) const {
     std::vector<double> const error = history.column("coning_error");
+    if (error.empty()) return {};
     return {{"coning_error", *std::max_element(error.begin(), error.end()), {}, {}}};
   }
   using Formulations = AttitudesFormulations;

@@ -58,12 +58,7 @@ struct CooperativeSwarm {
   /// The matrices as the law sees them.
   Each<Mat3<S>> rotations(State const& x) const {
     Each<Mat3<S>> all;
-    for (int i = 0; i < cooperative_craft; ++i) {
-      if constexpr (std::same_as<Point<A>, Mat3<S>>)
-        all[std::size_t(i)] = x[i].first;
-      else
-        all[std::size_t(i)] = matrix(A::attitude(x[i].first));
-    }
+    for (int i = 0; i < cooperative_craft; ++i) all[std::size_t(i)] = rotation_of<A>(x[i].first);
     return all;
   }
   CooperativeCommand<S> command(std::size_t i, State const& x, Each<Mat3<S>> const& R) const {

@@ -139,8 +139,8 @@ class DeadZone {
                    {"v_z_peak", "the command's greatest |v_z|", {}, "N m"},
                    {"chatter", "total variation of v, summed over the axes, at the steps taken", {}, "N m"}},
         .step = 0.005,  // K / beta = 100 1/s
-        // Whether a method stops at the kinks: same problem, more error.
-        .driven = {"unlocated"}};
+        .driven = {"unlocated"},
+        .pointing = angle_of_q};
     return facts;
   }
   std::vector<Parameter> parameters() {
@@ -180,7 +180,7 @@ class DeadZone {
   template <Scalar S, template <class> class A, bool>
   auto field() const {
     using R = Real<S>;
-    Vec3<S> const sigma{S(sigma0_[0]), S(sigma0_[1]), S(sigma0_[2])}, omega = nominal_.rate<S>();
+    Vec3<S> const sigma = loaded<Vec3<S>>(sigma0_.data()), omega = nominal_.rate<S>();
     Vec3<DeadZoneAxis> const& axis = dead_zone_axes;
     Mat3<R> const J = nominal_.matrix<R>();
     return DeadZoneBody<S, A<S>>{.path = {path_, R(t_f_), sigma, mrp_rate(sigma, omega)},
@@ -193,7 +193,7 @@ class DeadZone {
 
  private:
   void describe_body() {
-    Quat<double> const q = quaternion_of_mrp(Vec3<double>{sigma0_[0], sigma0_[1], sigma0_[2]});
+    Quat<double> const q = quaternion_of_mrp(loaded<Vec3<double>>(sigma0_.data()));
     body_ = nominal_;
     for (double& moment : body_.inertia) moment *= 1 + inertia_error_;
     body_.q0 = {q.x, q.y, q.z, q.w};
@@ -225,9 +225,8 @@ inline std::vector<ClaimResult> DeadZone::claims(History const& history) const {
   for (std::size_t i = 0; i < x.size(); ++i) farthest = std::max(farthest, std::hypot(x[i], y[i], z[i]));
 
   std::vector<ClaimResult> results;
-  double const arrival = t_f_ * (1 - 1e-9);  // times of outputs are rounded
-  if (!history.times.empty() && history.times.back() >= arrival) {
-    double const rest = greatest_of("sigma", arrival);
+  if (history.reaches(t_f_)) {
+    double const rest = greatest_of("sigma", t_f_ * (1 - 1e-9));  // times of outputs are rounded
     results.push_back({"sigma_rest", rest, {}, rest < 1e-6});
   }
   double const layer = greatest_of("sliding", 0) / gains_.beta;

@@ -9,6 +9,7 @@
 #include <cmath>
 
 #include "problems/erased.hpp"
+#include "problems/history.hpp"
 #include "problems/rigid_body.hpp"
 
 namespace polhode {
@@ -38,18 +39,11 @@ struct ProblemInfo {
   std::vector<ClaimInfo> claims;
   double step = 0.1;  ///< [s] at which every fixed-step method of the catalogue is stable on the default choice
   std::vector<std::string> driven{};  ///< variant words that change how a run is driven, not what it is held against
+  /// The angle to the attitude that the body is steered to: a column of its own [rad], or angle_of_q. Empty: none.
+  std::string pointing{};
 };
-
-/// Columns against time, as `simulate` prints them: rows[i] belongs to times[i].
-struct History {
-  std::vector<double> times;         ///< [s]
-  std::vector<std::string> columns;  ///< q1 q2 q3 q4 wx wy wz and the problem's own
-  std::vector<std::vector<double>> rows;
-  std::vector<double> events{};  ///< times of located state events [s], the first 256
-
-  /// The values of one column. Throws std::out_of_range for an unknown name.
-  std::vector<double> column(std::string const& name) const;
-};
+/// As ProblemInfo::pointing: the angle of the attitude itself, for bodies that are steered to q = (0, 0, 0, 1).
+inline constexpr char const* angle_of_q = "q";
 
 /// What the catalogue asks of a problem: D(choice) is the problem as chosen; it throws ParameterError when the choice
 /// cannot be. A complete one is tests/consumer/damped_body.hpp; problems/README.md goes through it.
@@ -182,25 +176,19 @@ void with_field(D const& definition, F f) {
     call.template operator()<false>();
 }
 
-/// The field as chosen with its type forgotten; null if it lives on another space than field().
-template <Scalar S, template <class> class A, Definition D>
-auto erase(D const& definition) {
-  using M = typename decltype(definition.template field<S, A, true>())::Space;
+/// The field as chosen with its type forgotten; null if it does not live on the space M.
+template <Space M, template <class> class A, Definition D>
+std::unique_ptr<Erased<M>> erased_on(D const& definition) {
   std::unique_ptr<Erased<M>> erased;
-  with_field<S, A>(definition, [&](auto field) {
+  with_field<typename M::Scalar, A>(definition, [&](auto field) {
     if constexpr (std::same_as<typename decltype(field)::Space, M>) erased = erase_type(std::move(field));
   });
   return erased;
 }
-
-inline std::vector<double> History::column(std::string const& name) const {
-  for (std::size_t i = 0; i < columns.size(); ++i) {
-    if (columns[i] != name) continue;
-    std::vector<double> values;
-    for (auto const& row : rows) values.push_back(row[i]);
-    return values;
-  }
-  throw std::out_of_range("no column " + name);
+/// The same on the space of field().
+template <Scalar S, template <class> class A, Definition D>
+auto erase(D const& definition) {
+  return erased_on<typename decltype(definition.template field<S, A, true>())::Space, A>(definition);
 }
 
 }  // namespace polhode

@@ -202,15 +202,6 @@ struct SpaceOver<Power<M, n>, T> {
   using type = Power<typename SpaceOver<M, T>::type, n>;
 };
 
-/// The field as chosen on the space M, over dual numbers or series, its type forgotten.
-template <Space M, template <class> class A, Definition D>
-std::unique_ptr<Erased<M>> erased_on(D const& definition) {
-  std::unique_ptr<Erased<M>> erased;
-  with_field<typename M::Scalar, A>(definition, [&](auto field) {
-    if constexpr (std::same_as<typename decltype(field)::Space, M>) erased = erase_type(std::move(field));
-  });
-  return erased;
-}
 /// Calls f(field) with the field as chosen, over double; on a flat space the field knows its Jacobian.
 template <template <class> class A, Definition D, class F>
 void with_differentiable_field(D const& definition, F f) {

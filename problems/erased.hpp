@@ -110,15 +110,22 @@ class Erased : public ErasedExtras<M> {
   mutable std::int64_t evaluations_ = 0;
 };
 
-/// Owns a problem, and shows what only those of its space show.
-template <Problem P, class M = typename P::Space>
-class Erasing : public Erased<M> {
+/// Owns a problem,
+template <Problem P>
+class Owning : public Erased<typename P::Space> {
  protected:
-  explicit Erasing(P problem) : problem_(std::move(problem)) {}
+  explicit Owning(P problem) : problem_(std::move(problem)) {}
   P problem_;
 };
+/// and shows what only those of its space show.
+template <Problem P, class M = typename P::Space>
+class Erasing : public Owning<P> {
+ protected:
+  using Owning<P>::Owning;
+  using Owning<P>::problem_;
+};
 template <Problem P, Attitude A>
-class Erasing<P, RigidBody<A>> : public Erased<RigidBody<A>> {
+class Erasing<P, RigidBody<A>> : public Owning<P> {
   using S = typename A::Scalar;
   static constexpr bool rigid = requires(P const& p) { p.inertia_matrix(); };
 
@@ -162,11 +169,11 @@ class Erasing<P, RigidBody<A>> : public Erased<RigidBody<A>> {
   }
 
  protected:
-  explicit Erasing(P problem) : problem_(std::move(problem)) {}
-  P problem_;
+  using Owning<P>::Owning;
+  using Owning<P>::problem_;
 };
 template <Problem P, Attitude A>
-class Erasing<P, Attitudes<A>> : public Erased<Attitudes<A>> {
+class Erasing<P, Attitudes<A>> : public Owning<P> {
  public:
   bool prescribed_rates() const override {
     if constexpr (requires { problem_.prescribed_rates(); })
@@ -176,17 +183,17 @@ class Erasing<P, Attitudes<A>> : public Erased<Attitudes<A>> {
   }
 
  protected:
-  explicit Erasing(P problem) : problem_(std::move(problem)) {}
-  P problem_;
+  using Owning<P>::Owning;
+  using Owning<P>::problem_;
 };
 template <Problem P, Attitude A>
-class Erasing<P, MovingBody<A>> : public Erased<MovingBody<A>> {
+class Erasing<P, MovingBody<A>> : public Owning<P> {
  public:
   PinnedBody<typename A::Scalar> const& mechanics() const override { return problem_.mechanics(); }
 
  protected:
-  explicit Erasing(P problem) : problem_(std::move(problem)) {}
-  P problem_;
+  using Owning<P>::Owning;
+  using Owning<P>::problem_;
 };
 
 /// Problem P as its space alone: what the slow form of a run calls, virtually.

@@ -13,6 +13,7 @@
 ///
 /// params  inertia [kg m^2], q0, omega0 [rad/s, body], orbit_rate n [rad/s]
 #include <algorithm>
+#include <numbers>
 
 #include "problems/definition.hpp"
 #include "problems/rigid_body.hpp"
@@ -26,7 +27,6 @@ struct GravityGradientBody {
   using State = Point<Space>;
 
   Inertia inertia;
-  Mat3<Real<S>> J;   ///< [kg m^2]
   Real<S> n;         ///< [rad/s]
   Real<S> three_n2;  ///< 3 n^2 [1/s^2]
   State start;
@@ -59,17 +59,12 @@ struct GravityGradientBody {
     Vec3<S> y, z;  ///< o2, o3 in body components: rows of the attitude's matrix
   };
   static POLHODE_INLINE OrbitalAxes axes(State const& x) {
-    Mat3<S> const m = body_axes(x.first);
+    Mat3<S> const m = rotation_of<A>(x.first);
     return {{m.e1.y, m.e2.y, m.e3.y}, {m.e1.z, m.e2.z, m.e3.z}};
-  }
-  static POLHODE_INLINE Mat3<S> body_axes(Point<A> const& attitude) {
-    if constexpr (std::same_as<Point<A>, Mat3<S>>)
-      return attitude;  // a quaternion on the way would branch, and join badly where orthogonality has drifted
-    else
-      return matrix(A::attitude(attitude));
   }
   /// v.J v
   S moment(Vec3<S> const& v) const {
+    Mat3<Real<S>> const J = inertia.matrix();
     return J.e1.x * (v.x * v.x) + J.e2.y * (v.y * v.y) + J.e3.z * (v.z * v.z) +
            Real<S>(2.0) * (J.e2.x * (v.x * v.y) + J.e3.x * (v.x * v.z) + J.e3.y * (v.y * v.z));
   }
@@ -80,7 +75,7 @@ class GravityGradient {
  public:
   explicit GravityGradient(Choice const& choice) {
     assign(parameters(), choice.set);
-    double const orbits = 6 * 2 * 3.14159265358979323846 / n_;
+    double const orbits = 6 * 2 * std::numbers::pi / n_;
     horizon = 100 * std::ceil(orbits / 100);
   }
 
@@ -96,7 +91,8 @@ class GravityGradient {
                     "at most 1e-6",
                     {},
                     ""}},
-        .step = 20};  // 0.02 rad of the orbit
+        .step = 20,  // 0.02 rad of the orbit
+        .pointing = "nadir_angle"};
     return facts;
   }
   std::vector<Parameter> parameters() {
@@ -115,24 +111,16 @@ class GravityGradient {
   template <Scalar S, template <class> class A, bool fast>
   auto field() const {
     using R = Real<S>;
-    if constexpr (fast)
-      return field_of<S, A>(PrincipalInertia<R>({R(body_.inertia[0]), R(body_.inertia[1]), R(body_.inertia[2])}));
-    else
-      return field_of<S, A>(FullInertia<R>(body_.matrix<R>()));
+    auto inertia = body_.euler_equation<R, fast>();
+    R const n(n_);
+    return GravityGradientBody<S, A<S>, decltype(inertia)>{
+        .inertia = inertia,
+        .n = n,
+        .three_n2 = R(3.0) * n * n,
+        .start = {A<S>::from_attitude(body_.attitude<S>()), body_.rate<S>()}};
   }
 
  private:
-  template <Scalar S, template <class> class A, class Inertia>
-  auto field_of(Inertia const& inertia) const {
-    using R = Real<S>;
-    R const n(n_);
-    return GravityGradientBody<S, A<S>, Inertia>{.inertia = inertia,
-                                                 .J = body_.matrix<R>(),
-                                                 .n = n,
-                                                 .three_n2 = R(3.0) * n * n,
-                                                 .start = {A<S>::from_attitude(body_.attitude<S>()), body_.rate<S>()}};
-  }
-
   /// q4 = sqrt(.985); omega0 = (0, -n, 0) + (1, -2, 1) 1e-4 rad/s.
   BodyParameters body_{
       .inertia = {100, 120, 80}, .q0 = {0.05, 0.1, -0.05, 0.9924716620639604}, .omega0 = {1e-4, -1.3e-3, 1e-4}};

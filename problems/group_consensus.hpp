@@ -12,6 +12,8 @@
 /// The law is written in sigma of the quaternion with its sign, |sigma| > 1 where a body has turned beyond 180 deg;
 /// `shadow` gives it the inner point instead, and then it jumps, and V with it.
 /// state   n bodies: attitude (body to inertial axes) x omega [rad/s, body]
+#include <numbers>
+
 #include "problems/controllers/consensus.hpp"
 #include "problems/definition.hpp"
 #include "problems/formulations.hpp"
@@ -37,7 +39,6 @@ struct ConsensusSwarm {
 
   Graph graph;
   PrincipalInertia<Real<S>> inertia;
-  Vec3<Real<S>> moments;  ///< [kg m^2]
   State start;
   bool inner;                                   ///< the law sees the inner point
   std::array<bool, consensus_bodies> beyond{};  ///< sides, if held: turned beyond 180 deg
@@ -88,6 +89,7 @@ struct ConsensusSwarm {
   /// every link counted once.
   S lyapunov(State const& x) const {
     auto const all = all_sigma(x);
+    Vec3<Real<S>> const& moments = inertia.moments;
     S twice(0.0);
     for (int i = 0; i < consensus_bodies; ++i) {
       Vec3<S> const& w = x[i].second;
@@ -185,9 +187,7 @@ class GroupConsensus {
       return "the law jumps where a scalar part changes its sign, which a matrix has not: add the variant unlocated";
     return "";
   }
-  using Formulations = Types<Formulation<FlatQuaternion>, Formulation<S3>, Formulation<SO3>, Formulation<FlatRotation>,
-                             Formulation<Mrp>, Formulation<MrpShadow>>;
-
+  using Formulations = BodiesFormulations;
   using TimedFormulations = Types<Formulation<FlatQuaternion>, Formulation<S3>, Formulation<Mrp>>;
   std::vector<Column> columns() const {
     return {{"lyapunov", "J"}, {"spread", "rad/s"}, {"sigma_max", ""}, {"g1_x", "rad/s"}, {"g1_y", "rad/s"},
@@ -198,25 +198,18 @@ class GroupConsensus {
   template <Scalar S, template <class> class A, bool>
   auto field() const {
     using R = Real<S>;
-    Vec3<R> const moments{R(inertia_[0]), R(inertia_[1]), R(inertia_[2])};
     Point<RigidBodies<A<S>>> start(consensus_bodies);
     for (int i = 0; i < consensus_bodies; ++i) {
-      Vec3<S> const sigma = triple<S>(sigma0_, i);
-      start[i] = {A<S>::from_attitude(quaternion_of_mrp(sigma)), triple<S>(omega0_, i)};
+      Vec3<S> const sigma = loaded<Vec3<S>>(sigma0_.data() + 3 * i), omega = loaded<Vec3<S>>(omega0_.data() + 3 * i);
+      start[i] = {A<S>::from_attitude(quaternion_of_mrp(sigma)), omega};
     }
     return ConsensusSwarm<S, A<S>>{.graph = graph_,
-                                   .inertia = PrincipalInertia<R>(moments),
-                                   .moments = moments,
+                                   .inertia = PrincipalInertia<R>(loaded<Vec3<R>>(inertia_.data())),
                                    .start = std::move(start),
                                    .inner = shadow_};
   }
 
  private:
-  template <class S>
-  static Vec3<S> triple(std::vector<double> const& numbers, int i) {
-    auto const at = [&](int k) { return S(numbers[std::size_t(3 * i + k)]); };
-    return {at(0), at(1), at(2)};
-  }
   /// Eigenvalues nearer to 0 than this are 0.
   double rounding() const { return 1e-12 * std::max(1.0, spectrum_.back()); }
   int zero_eigenvalues() const {
@@ -224,7 +217,7 @@ class GroupConsensus {
                              [&](double value) { return std::fabs(value) <= rounding(); }));
   }
   /// 2 pi / |omega| [s] of body 1: all bodies alike, from sigma = 0.
-  double escape_time() const { return 2 * 3.14159265358979323846 / length(triple<double>(omega0_, 0)); }
+  double escape_time() const { return 2 * std::numbers::pi / length(loaded<Vec3<double>>(omega0_.data())); }
   void add_spectrum(std::vector<ClaimResult>& results) const;
   void add_motion(std::vector<ClaimResult>& results, History const& history) const;
 
@@ -265,7 +258,6 @@ inline ProblemInfo const& GroupConsensus::info() {
             {},
             "s"}},
       .step = 0.005,  // rates of up to 5 rad/s
-      // Whether a method stops where the law jumps: same problem, more error.
       .driven = {"unlocated"}};
   return facts;
 }
@@ -315,7 +307,7 @@ inline void GroupConsensus::add_motion(std::vector<ClaimResult>& results, Histor
   }
   std::optional<double> const from = history::below_from(t, spread, 0.1);
   results.push_back({"together", from, {}, from ? within(*from, of(together), 0.1) : false});
-  if (t.back() < 100 * (1 - 1e-9)) return;  // the paper reads them off at 100 s
+  if (!run.reaches(100)) return;  // the paper reads them off at 100 s
   constexpr char const* names[] = {"g1_x", "g1_y", "g1_z", "g2_x", "g2_y", "g2_z"};
   for (int k = 0; k < 6; ++k) {
     double const rate = std::fabs(run.column(names[k]).back()), printed = rates[start_][k];

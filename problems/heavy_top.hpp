@@ -112,7 +112,7 @@ class HeavyTop {
 
   template <class S>
   Vec3<S> arm() const {
-    return {S(arm_[0]), S(arm_[1]), S(arm_[2])};
+    return loaded<Vec3<S>>(arm_.data());
   }
   template <class S>
   Vec3<S> acceleration() const {
@@ -142,11 +142,8 @@ inline std::vector<ClaimResult> HeavyTop::claims(History const& history) const {
   std::vector<ClaimResult> results;
   if (about_pivot_) return results;
   std::vector<double> const rate = history.column("omega_inertial_y");
-  for (std::size_t i = 0; i < rate.size(); ++i)
-    if (std::fabs(history.times[i] - 2) < 1e-9) {
-      results.push_back({"omega_y_2s", rate[i], published, std::fabs(rate[i] - published) <= 1e-6});
-      break;
-    }
+  if (auto const row = history.row_at(2))
+    results.push_back({"omega_y_2s", rate[*row], published, std::fabs(rate[*row] - published) <= 1e-6});
   return results;
 }
 

@@ -72,7 +72,7 @@ class KroghB5 {
 
   template <Scalar S, template <class> class, bool>
   auto field() const {
-    return KroghField<S>{Real<S>(m_), {S(y0_[0]), S(y0_[1]), S(y0_[2])}};
+    return KroghField<S>{Real<S>(m_), loaded<Vec3<S>>(y0_.data())};
   }
   /// y at time t [s] by Jacobi's functions; null for initial data other than (0, 1, 1).
   std::optional<Vec3<Quad>> closed_form(Quad const& t) const {
@@ -91,13 +91,11 @@ class KroghB5 {
 inline std::vector<ClaimResult> KroghB5::claims(History const& history) const {
   constexpr double printed[] = {-0.93965707987292035, -0.34211777540007493, 0.74141265961999525};
   if (m_ != 0.51 || y0_ != std::vector<double>{0, 1, 1}) return {};
-  auto const at_20 = std::find_if(history.times.begin(), history.times.end(),
-                                  [](double t) { return std::fabs(t - 20) < 1e-9; });  // times of outputs are rounded
-  if (at_20 == history.times.end()) return {};
-  auto const row = std::size_t(at_20 - history.times.begin());
+  auto const row = history.row_at(20);
+  if (!row) return {};
   double apart = 0;
   for (std::size_t i = 0; i < 3; ++i)
-    apart = std::max(apart, std::fabs(history.column("y" + std::to_string(i + 1))[row] - printed[i]));
+    apart = std::max(apart, std::fabs(history.column("y" + std::to_string(i + 1))[*row] - printed[i]));
   return {{"y_20", apart, {}, apart <= 1e-12}};
 }
 

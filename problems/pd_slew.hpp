@@ -39,7 +39,8 @@ class PdSlew {
         .source = "Wie & Barba (1985), J. Guidance 8, 360; data: Xu et al. (2017)",
         .variants = {{"plain", "gyrostat", "delayed", "quantized"}},
         .events = {"control samples (delayed, quantized)"},
-        .claims = {}};
+        .claims = {},
+        .pointing = angle_of_q};
     return facts;
   }
   std::vector<Parameter> parameters() {
@@ -76,8 +77,7 @@ class PdSlew {
       double const torque_step = control_ == Control::quantized ? torque_step_ : 0;
       f(controlled_body<S, A, fast>(body_, SampledPd<S>(law<S>(), late_, Real<S>(torque_step))));
     } else {
-      Vec3<S> const wheel{S(wheel_[0]), S(wheel_[1]), S(wheel_[2])};
-      f(controlled_body<S, A, fast>(body_, GyrostatPd<S>{law<S>(), wheel}));
+      f(controlled_body<S, A, fast>(body_, GyrostatPd<S>{law<S>(), loaded<Vec3<S>>(wheel_.data())}));
     }
   }
 

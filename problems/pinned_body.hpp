@@ -13,14 +13,6 @@
 
 namespace polhode {
 
-/// The rotation matrix of an attitude in any description; a matrix is taken as it is.
-template <Attitude A, class S = typename A::Scalar>
-POLHODE_INLINE Mat3<S> rotation_of(Point<A> const& attitude) {
-  if constexpr (std::same_as<Point<A>, Mat3<S>>)
-    return attitude;
-  else
-    return matrix(A::attitude(attitude));
-}
 /// The x with m x = b, by Cramer's rule.
 template <class S>
 POLHODE_INLINE Vec3<S> solve(Mat3<S> const& m, Vec3<S> const& b) {
@@ -77,7 +69,7 @@ class PinnedBody {
   /// -M^-1 G^T mu: what the impulse mu [N s] at the pivot does to omega and v.
   POLHODE_INLINE Accelerations impulse(Mat3<S> const& R, Vec3<S> const& mu) const {
     Vec3<S> const torque = cross(lifted(arm_), transposed_times(R, mu));
-    return {lifted(inertia_.inverse) * torque, (Real<S>(-1.0) / mass_) * mu};
+    return {inertia_.inverse * torque, (Real<S>(-1.0) / mass_) * mu};
   }
   /// The mu with G M^-1 G_before^T mu = rate [m/s], G at R, G_before at R_before: the impulse, given at R_before, that
   /// takes `rate` out of G u at R.
@@ -97,12 +89,12 @@ class PinnedBody {
 
   /// Kinetic and potential energy [J].
   S energy(Vec3<S> const& x, Vec3<S> const& omega, Vec3<S> const& v) const {
-    S const kinetic = dot(omega, lifted(inertia_.J) * omega) + mass_ * dot(v, v);
+    S const kinetic = dot(omega, inertia_.J * omega) + mass_ * dot(v, v);
     return Real<S>(0.5) * kinetic - mass_ * dot(x, lifted(gravity_));
   }
   /// Angular momentum about the pivot [N m s, inertial].
   Vec3<S> angular_momentum(Mat3<S> const& R, Vec3<S> const& x, Vec3<S> const& omega, Vec3<S> const& v) const {
-    return R * (lifted(inertia_.J) * omega) + mass_ * cross(x, v);
+    return R * (inertia_.J * omega) + mass_ * cross(x, v);
   }
 
   /// A constant as it enters the arithmetic of states.

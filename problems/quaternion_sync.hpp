@@ -155,7 +155,6 @@ class QuaternionSync {
                    {"crossing_2", "craft 3's; ours: .4855026743", {}, "s"},
                    {"crossing_3", "craft 1's; ours: 1.0050253857", {}, "s"},
                    {"trap", "protocol7 leaves attitudes sqrt(2) apart: the greatest departure from that", {}, ""}},
-        // Whether a method stops where a scalar part crosses 0: same problem, more error.
         .driven = {"unlocated"}};
     return facts;
   }
@@ -176,7 +175,8 @@ class QuaternionSync {
     if (formulation == FlatQuaternion<double>::name || formulation == S3<double>::name) return "";
     return "the law sees the sign of the quaternion, which this formulation has not";
   }
-  using Formulations = Types<Formulation<FlatQuaternion>, Formulation<S3>, Formulation<Mrp>>;
+  using Formulations = AttitudesFormulations;
+  using TimedFormulations = AttitudesFormulations;
 
   /// References in quadruple precision are for networks that fit into one.
   std::string no_reference() const {
@@ -184,7 +184,6 @@ class QuaternionSync {
                ? ""
                : "more than " + std::to_string(most_for_reference) + " craft: no reference in quadruple precision";
   }
-  using TimedFormulations = Types<Formulation<FlatQuaternion>, Formulation<S3>, Formulation<Mrp>>;
   std::vector<Column> columns() const {
     std::vector<Column> list{{"disagreement", ""}, {"scalar_spread", ""}, {"scalar_min", ""}};
     if (!null_vector_.empty()) list.push_back({"lyapunov", ""});
@@ -268,7 +267,7 @@ inline std::vector<ClaimResult> QuaternionSync::claims(History const& run) const
   if (run.times.empty()) return results;
   constexpr double rounding = 1e-9;
   std::vector<double> const apart = run.column("disagreement"), least = run.column("scalar_min");
-  bool const to_the_end = run.times.back() >= horizon * (1 - 1e-9);
+  bool const to_the_end = run.reaches(horizon);
   // Our own numbers (tests/sync_test.cpp) hold for the paper's data, normalised.
   bool const known = printed_ && !recomputed_ && !raw_ && !trap_ && to_the_end;
   auto const against = [&](double value, double of_7, double of_13, double tolerance) -> std::optional<bool> {

@@ -1,5 +1,6 @@
 #pragma once
 /// One rigid body under one controller: Euler's equation in body axes,  J omega' = J omega x omega + torque.
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -58,14 +59,7 @@ struct FullInertia {
   }
   template <class S>
   Vec3<S> acceleration(Vec3<S> const& w, Vec3<S> const& torque) const {
-    return times(inverse, sign * cross(times(J, w), w) + torque);
-  }
-
- private:
-  template <class S>
-  static Vec3<S> times(Mat3<R> const& m, Vec3<S> const& v) {
-    return {m.e1.x * v.x + m.e2.x * v.y + m.e3.x * v.z, m.e1.y * v.x + m.e2.y * v.y + m.e3.y * v.z,
-            m.e1.z * v.x + m.e2.z * v.y + m.e3.z * v.z};
+    return inverse * (sign * cross(J * w, w) + torque);
   }
 };
 
@@ -183,7 +177,7 @@ struct BodyParameters {
   bool raw_q0 = false;                                                ///< keep |q0| as given
   double coriolis_sign = 1;                                           ///< -1: the sign that the tether paper prints
 
-  static constexpr double degree = 3.14159265358979323846 / 180;
+  static constexpr double degree = std::numbers::pi / 180;  ///< [rad]
 
   std::vector<Parameter> list() {
     return {{"inertia", "kg m^2", Rule::inertia, inertia},
@@ -198,31 +192,33 @@ struct BodyParameters {
     auto const at = [&](std::size_t i) { return i < inertia.size() ? R(inertia[i]) : R(0.0); };
     return {{at(0), at(3), at(4)}, {at(3), at(1), at(5)}, {at(4), at(5), at(2)}};
   }
+  /// Euler's equation: principal, of 3 moments, the fast form; otherwise with the full matrix.
+  template <class R, bool principal>
+  auto euler_equation() const {
+    if constexpr (principal)
+      return PrincipalInertia<R>(loaded<Vec3<R>>(inertia.data()), R(coriolis_sign));
+    else
+      return FullInertia<R>(matrix<R>(), R(coriolis_sign));
+  }
   /// Initial attitude in scalar S, normalised in that scalar.
   template <class S>
   Quat<S> attitude() const {
-    Quat<S> const q{S(q0[0]), S(q0[1]), S(q0[2]), S(q0[3])};
+    Quat<S> const q = loaded<Quat<S>>(q0.data());
     return raw_q0 ? q : normalised(q);
   }
+  /// Initial body rate [rad/s].
   template <class S>
   Vec3<S> rate() const {
-    return {S(omega0[0]), S(omega0[1]), S(omega0[2])};
+    return loaded<Vec3<S>>(omega0.data());
   }
 };
 
-/// The field of `body` under `control`. Principal: 3 moments, the fast form; otherwise the full matrix.
+/// The field of `body`, which is principal() or not, under `control`.
 template <Scalar S, template <class> class A, bool principal, Controller Control>
 auto controlled_body(BodyParameters const& body, Control const& control) {
-  using R = Real<S>;
-  Pair<Point<A<S>>, Vec3<S>> const start{A<S>::from_attitude(body.attitude<S>()), body.rate<S>()};
-  if constexpr (principal) {
-    PrincipalInertia<R> const inertia({R(body.inertia[0]), R(body.inertia[1]), R(body.inertia[2])},
-                                      R(body.coriolis_sign));
-    return ControlledBody<S, A, PrincipalInertia<R>, Control>{inertia, control, start};
-  } else {
-    FullInertia<R> const inertia(body.matrix<R>(), R(body.coriolis_sign));
-    return ControlledBody<S, A, FullInertia<R>, Control>{inertia, control, start};
-  }
+  auto inertia = body.euler_equation<Real<S>, principal>();
+  return ControlledBody<S, A, decltype(inertia), Control>{
+      inertia, control, {A<S>::from_attitude(body.attitude<S>()), body.rate<S>()}};
 }
 
 }  // namespace polhode

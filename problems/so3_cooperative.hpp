@@ -92,20 +92,15 @@ class So3Cooperative {
                                     .start = Point<RigidBodies<A<S>>>(cooperative_craft)};
     S const degree = S(R(atan2(R(0.0), R(-1.0)) / R(180.0)));
     for (int i = 0; i < cooperative_craft; ++i) {
-      auto const [pitch, yaw, roll] = triple<S>(angles0_, i);
+      auto const [pitch, yaw, roll] = loaded<Vec3<S>>(angles0_.data() + 3 * i);
       Vec3<S> const euler = degree * Vec3<S>{roll, yaw, pitch};  // about x, y, z
-      swarm.start[i] = {A<S>::from_attitude(EulerAngles<S>::attitude(euler)), triple<S>(omega0_, i)};
+      swarm.start[i] = {A<S>::from_attitude(EulerAngles<S>::attitude(euler)), loaded<Vec3<S>>(omega0_.data() + 3 * i)};
       swarm.inertia[std::size_t(i)] = inertia_of(i).template matrix<R>();
     }
     return swarm;
   }
 
  private:
-  template <class S>
-  static Vec3<S> triple(std::vector<double> const& numbers, int i) {
-    auto const at = [&](int k) { return S(numbers[std::size_t(3 * i + k)]); };
-    return {at(0), at(1), at(2)};
-  }
   BodyParameters inertia_of(int i) const {
     BodyParameters body;
     body.inertia.assign(inertia_.begin() + 6 * i, inertia_.begin() + 6 * i + 6);
@@ -192,7 +187,6 @@ inline ProblemInfo const& So3Cooperative::info() {
                  {"euler_jump", "ex2: near .45 s craft 2's pitch and roll jump within 5 ms: by over 90", {}, "deg"},
                  {"r23_jump", "while its R_23 moves by less than .01", {}, ""}},
       .step = 0.05,
-      // Whether a method stops where a craft changes its surface: same problem, more error.
       .driven = {"unlocated"}};
   return facts;
 }
@@ -203,7 +197,7 @@ inline std::vector<ClaimResult> So3Cooperative::claims(History const& run) const
   std::vector<double> const apart = run.column("q_a");
   std::optional<double> const t1 = history::below_from(run.times, apart, 1);
   bool const paper = known_start_ && !large_;
-  if (run.times.back() >= horizon * (1 - 1e-9)) {
+  if (run.reaches(horizon)) {
     constexpr std::array printed{4.89, 5.15, 9.29};
     double const of_method = printed[std::size_t(method_ - 1)];
     if (paper)

@@ -253,6 +253,16 @@ struct FlatRotation : Flat<S, Mat3<S>>, OrthogonalMatrix<S> {
   static POLHODE_INLINE Mat3<S> chart_rate(Mat3<S> const&, Mat3<S> const& u, Velocity const& w) { return rate(u, w); }
 };
 
+/// The rotation matrix of an attitude in any description. A matrix is taken as it is: a quaternion on the way would
+/// branch, and join badly where orthogonality has drifted.
+template <Attitude A, class S = typename A::Scalar>
+POLHODE_INLINE Mat3<S> rotation_of(Point<A> const& attitude) {
+  if constexpr (std::same_as<Point<A>, Mat3<S>>)
+    return attitude;
+  else
+    return matrix(A::attitude(attitude));
+}
+
 /// Two spaces as one; the defect is the greater of the two.
 template <SmallSpace A, SmallSpace B>
 struct Product {

@@ -125,6 +125,13 @@ template <class V, class S>
 POLHODE_INLINE void load(V& v, S const* in) {
   V::each([&](auto& a) POLHODE_LAMBDA { a = *in++; }, v);
 }
+/// The vector of the components from `in` on.
+template <class V, class S>
+V loaded(S const* in) {
+  V v;
+  load(v, in);
+  return v;
+}
 
 template <class S>
 POLHODE_INLINE Vec3<S> operator+(Vec3<S> const& a, Vec3<S> const& b) {
@@ -155,9 +162,9 @@ POLHODE_INLINE S dot(Quat<S> const& p, Quat<S> const& q) {
   return p.x * q.x + p.y * q.y + p.z * q.z + p.w * q.w;
 }
 
-/// m v.
-template <class S>
-POLHODE_INLINE Vec3<S> operator*(Mat3<S> const& m, Vec3<S> const& v) {
+/// m v.   R  S, or the type of its parameters
+template <class R, class S>
+POLHODE_INLINE Vec3<S> operator*(Mat3<R> const& m, Vec3<S> const& v) {
   return {m.e1.x * v.x + m.e2.x * v.y + m.e3.x * v.z, m.e1.y * v.x + m.e2.y * v.y + m.e3.y * v.z,
           m.e1.z * v.x + m.e2.z * v.y + m.e3.z * v.z};
 }

@@ -113,15 +113,11 @@ struct SlidingLaw {
     Vec3<S> const s = eta_rate + c * (sigma - path.at);
     Vec3<S> const wanted =
         path.acceleration - mrp_rate_change(sigma, rate, omega) - c * eta_rate - k * saturated(inverse_beta * s);
-    Vec3<S> const torque = cross(omega, momentum(omega)) + momentum(mrp_rate_inverse(sigma, wanted));
+    Vec3<S> const torque = cross(omega, J * omega) + J * mrp_rate_inverse(sigma, wanted);
     return {{inverse_slope.x * torque.x, inverse_slope.y * torque.y, inverse_slope.z * torque.z}, s};
   }
 
  private:
-  Vec3<S> momentum(Vec3<S> const& w) const {
-    return {J.e1.x * w.x + J.e2.x * w.y + J.e3.x * w.z, J.e1.y * w.x + J.e2.y * w.y + J.e3.y * w.z,
-            J.e1.z * w.x + J.e2.z * w.y + J.e3.z * w.z};
-  }
   static Vec3<S> saturated(Vec3<S> const& s) {
     S const one(1.0), less(-1.0);
     return {clamp(s.x, less, one), clamp(s.y, less, one), clamp(s.z, less, one)};
