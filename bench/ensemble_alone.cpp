@@ -11,11 +11,6 @@ namespace {
 std::size_t place_of(std::vector<Column> const& columns, std::string_view name) {
   return std::size_t(std::ranges::find(columns, name, &Column::name) - columns.begin());
 }
-/// The column of the problem's own pointing angle; their number if it has none.
-std::size_t angle_column(std::vector<Column> const& columns) {
-  std::size_t const alpha = place_of(columns, "alpha");
-  return alpha < columns.size() ? alpha : place_of(columns, "nadir_angle");
-}
 
 /// Of one body: | q.q - 1 | of quaternions, else the space's own measure.
 template <SmallSpace M>
@@ -39,11 +34,11 @@ class SampleWatch final : public Watch<M> {
   SampleWatch(Erased<M> const& problem, ChosenProblem const& chosen, double t_end, double settle_angle)
       : problem_(problem),
         t_end_(t_end),
-        pointing_(pointing_of(chosen)),
+        points_(!chosen.info().pointing.empty()),
         metrics_(settle_angle, chosen.sample_period() > 0) {
     std::vector<Column> const columns = chosen.columns();
     shown_.resize(columns.size());
-    angle_ = angle_column(columns);
+    angle_ = place_of(columns, chosen.info().pointing);
     torque_ = place_of(columns, "torque_x");
     free_ = chosen.torque_free();
   }
@@ -65,8 +60,9 @@ class SampleWatch final : public Watch<M> {
       auto const end = end_of<M>(x);
       seen.omega = {end[4], end[5], end[6]};
       if (!shown_.empty()) problem_.show(t, x, shown_);
-      if (pointing_ == Pointing::own_column) seen.angle = shown_[angle_];
-      if (pointing_ == Pointing::attitude)
+      if (angle_ < shown_.size())
+        seen.angle = shown_[angle_];
+      else if (points_)
         seen.angle = 2.0 * arctangent(length(Vec3<double>{end[0], end[1], end[2]}), std::fabs(end[3]));
       seen.torque = torque(t, x);
     }
@@ -94,7 +90,7 @@ class SampleWatch final : public Watch<M> {
 
   Erased<M> const& problem_;
   double t_end_;
-  Pointing pointing_;
+  bool points_;
   SampleMetrics<double> metrics_;
   std::vector<double> shown_;
   std::size_t angle_ = 0, torque_ = 0;
@@ -103,13 +99,6 @@ class SampleWatch final : public Watch<M> {
 };
 
 }  // namespace
-
-Pointing pointing_of(ChosenProblem const& problem) {
-  std::vector<Column> const columns = problem.columns();
-  if (angle_column(columns) < columns.size()) return Pointing::own_column;
-  std::string const& name = problem.info().name;  // the others have no attitude to come to rest at
-  return name == "pd_slew" || name == "dead_zone" ? Pointing::attitude : Pointing::none;
-}
 
 bool has_torque(ChosenProblem const& problem, std::string_view formulation) {
   std::vector<Column> const columns = problem.columns();

@@ -98,7 +98,7 @@ void EnsembleJob::check_ends() const {
 void EnsembleJob::choose_metrics() {
   ChosenProblem const& problem = *prepared_->problem;
   auto const take = [&](auto... metrics) { (metrics_.push_back(metrics), ...); };
-  if (pointing_of(problem) != Pointing::none) take(Metric::settle_time, Metric::peak_angle, Metric::final_angle);
+  if (!problem.info().pointing.empty()) take(Metric::settle_time, Metric::peak_angle, Metric::final_angle);
   if (has_torque(problem, prepared_->cell.formulation))
     take(Metric::peak_torque, Metric::control_effort, Metric::control_work);
   bool const one_body = std::visit([]<Space M>(std::unique_ptr<Erased<M>> const&) { return !PowerSpace<M>; },

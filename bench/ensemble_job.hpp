@@ -81,9 +81,6 @@ class EnsembleJob {
 
 /// One sample alone, by the virtual calls that `simulate` runs on: any problem, any integrator with fixed steps.
 SampleResult run_alone(PreparedCell const& base, Choice const& choice, double settle_angle);
-/// The angle of a controlled problem is its own column, or the angle of its attitude; empty if it has none.
-enum class Pointing { none, own_column, attitude };
-Pointing pointing_of(ChosenProblem const& problem);
 /// It commands a torque, or shows one.
 bool has_torque(ChosenProblem const& problem, std::string_view formulation);
 
