@@ -157,8 +157,18 @@ TEST_F(CliCheck, MergesFoldersIntoOneThatCanBeChecked) {
   Result const merged = polhode(folder, "merge all results again");
   EXPECT_EQ(merged.code, 0) << merged.err;
   EXPECT_EQ(merged.out, "all: 4 records from 2 files of 2 folders; 4 repeated runs left out\n");
+  EXPECT_EQ(merged.err, "");
   EXPECT_EQ(polhode(folder, "check all --golden golden").code, 0);
   EXPECT_EQ(polhode(folder, "merge all results").code, 5) << "it holds records already";
+}
+
+TEST_F(CliCheck, MergeNamesWhatItLeaves) {
+  folder.write("results/notes.txt", "ours");
+  for (int i = 0; i < 9; ++i) folder.write("results/other" + std::to_string(i), "");
+  Result const merged = polhode(folder, "merge all results");
+  EXPECT_EQ(merged.code, 0);
+  EXPECT_THAT(merged.err, testing::StartsWith("polhode: left where they are: results/notes.txt, results/other0, "));
+  EXPECT_THAT(merged.err, testing::EndsWith(", results/other6 and 2 more\n"));
 }
 
 TEST_F(CliCheck, MergeRefusesDamageWithItsLine) {

@@ -98,10 +98,33 @@ TEST_F(Workflow, AFailureIsMarkedWhereItIs) {
   write_suite("1e-30");
   EXPECT_EQ(run("Run"), 0) << log;
   EXPECT_EQ(run("Check"), 1);
-  EXPECT_THAT(log, HasSubstr("::error file=results/suite.toml,line=11,title=polhode check%3A norm_drift::"));
+  EXPECT_THAT(log, HasSubstr("::error file=ci/attitude.toml,line=11,title=polhode check%3A norm_drift::"));
   EXPECT_THAT(log, HasSubstr("norm_drift = "));
   EXPECT_THAT(text_of(folder.path / "summary.md"), HasSubstr("= 1e-30\n"));
   EXPECT_THAT(text_of(folder.path / "junit.xml"), Not(HasSubstr("failures=\"0\"")));
+}
+
+/// The file of the annotations that `check` makes of a folder.
+std::string marked_file(Folder const& folder, std::string const& results) {
+  Result const result = polhode(folder, "check " + results, {"GITHUB_ACTIONS=true", "GITHUB_STEP_SUMMARY="});
+  std::size_t const from = result.out.find("::error file=") + 13;
+  return result.out.substr(from, result.out.find(',', from) - from);
+}
+
+TEST_F(Workflow, TheMarkIsInTheFileOfTheRepository) {
+  write_suite("1e-30");
+  fs::create_directory(folder.path / ".git");
+  std::string const root = folder.path.string();
+  // Started below the top of the repository; the suite by an absolute path; from a folder outside.
+  EXPECT_EQ(Process(folder.path / "ci", split("run attitude.toml --out ../below")).finish().code, 0);
+  EXPECT_EQ(polhode(folder, "run " + root + "/ci/attitude.toml --out absolute").code, 0);
+  Folder const elsewhere;
+  EXPECT_EQ(polhode(elsewhere, "run " + root + "/ci/attitude.toml --out " + root + "/outside").code, 0);
+  EXPECT_EQ(marked_file(folder, "below"), "ci/attitude.toml");
+  EXPECT_EQ(marked_file(folder, "absolute"), "ci/attitude.toml");
+  EXPECT_EQ(marked_file(folder, "outside"), "outside/suite.toml") << "unknown: the copy";
+  EXPECT_EQ(polhode(folder, "merge all below").code, 0);
+  EXPECT_EQ(marked_file(folder, "all"), "ci/attitude.toml");
 }
 
 TEST_F(Workflow, AWorseTrajectoryFails) {
