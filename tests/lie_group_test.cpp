@@ -52,13 +52,6 @@ TEST(ProductsOfExponentials, TheOrderInWhichTheyActMatters) {
   EXPECT_LT(greatest_defect(scheme, 4, 2), rounding) << "classical conditions alone would not see it so soon";
 }
 
-TEST(CrouchGrossman4, DecimalsAreReadToTheLastBit) {
-  EXPECT_TRUE(0.8177227988124851838643834157678926_quad ==
-              strtoflt128("0.8177227988124851838643834157678926", nullptr));
-  EXPECT_TRUE(0.25_quad == Quad(0.25));
-  EXPECT_TRUE(12_quad == Quad(12));
-}
-
 /// a_21, a_31, a_32, ..., b_1, ... as a scheme.
 Scheme crouch_grossman(std::vector<Quad> const& coefficients) {
   Scheme scheme{{}};
@@ -83,11 +76,12 @@ std::vector<Quad> defects_to_order_4(std::vector<Quad> const& coefficients) {
 // Newton with the shortest step: residuals in quadruple precision, their derivative and its pseudo-inverse in double.
 // Along the solutions, of which there is a plane, that finds the nearest to 1e-30; across, the residual decides.
 TEST(CrouchGrossman4, IsTheSolutionNearestToThePrintedDigits) {
-  std::vector<Quad> const printed{0.8177227988124852_quad,  0.3199876375476427_quad,  0.0659864263556022_quad,
-                                  0.9214417194464946_quad,  0.4997857776773573_quad,  -1.0969984448371582_quad,
-                                  0.3552358559023322_quad,  0.2390958372307326_quad,  1.3918565724203246_quad,
-                                  -1.1092979392113465_quad, 0.1370831520630755_quad,  -0.0183698531564020_quad,
-                                  0.7397813985370780_quad,  -0.1907142565505889_quad, 0.3322195591068374_quad};
+  constexpr Decimal digits[]{0.8177227988124852_q, 0.3199876375476427_q,  0.0659864263556022_q, 0.9214417194464946_q,
+                             0.4997857776773573_q, -1.0969984448371582_q, 0.3552358559023322_q, 0.2390958372307326_q,
+                             1.3918565724203246_q, -1.1092979392113465_q, 0.1370831520630755_q, -0.0183698531564020_q,
+                             0.7397813985370780_q, -0.1907142565505889_q, 0.3322195591068374_q};
+  std::vector<Quad> printed;
+  for (Decimal const& digit : digits) printed.push_back(digit.value);
   std::vector<Quad> z = printed;
   for (int sweep = 0; sweep < 4; ++sweep) {
     std::vector<Quad> const residual = defects_to_order_4(z);
@@ -112,14 +106,14 @@ TEST(CrouchGrossman4, IsTheSolutionNearestToThePrintedDigits) {
     for (std::size_t k = 0; k < z.size(); ++k) z[k] -= Quad(change(Eigen::Index(k)));
   }
   std::size_t k = 0;
-  auto const expect_next = [&](Quad const& coefficient) {
-    EXPECT_LT(double(fabsq(coefficient - z[k])), 1e-30) << "coefficient " << k;
-    EXPECT_LT(double(fabsq(coefficient - printed[k])), 1e-16) << "coefficient " << k;
+  auto const expect_next = [&](Decimal const& coefficient) {
+    EXPECT_LT(double(fabsq(coefficient.value - z[k])), 1e-30) << "coefficient " << k;
+    EXPECT_LT(double(fabsq(coefficient.value - printed[k])), 1e-16) << "coefficient " << k;
     ++k;
   };
   for (std::size_t i = 1; i < 5; ++i)
     for (std::size_t j = 0; j < i; ++j) expect_next(Cg4Tableau::a[i][j]);
-  for (Quad const& b : Cg4Tableau::b) expect_next(b);
+  for (Decimal const& b : Cg4Tableau::b) expect_next(b);
 }
 
 // ---- Order ----------------------------------------------------------------------------------------------------------
