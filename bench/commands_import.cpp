@@ -52,7 +52,9 @@ void import(ImportFlags const& flags) {
   TrajectoryTable const table = read_trajectory(flags.file, columns_to_import(prepared));
   cell.t_end = scored_until(table, prepared, flags.cell.has_t_end->count() > 0);
   if (cell.t_end != prepared.cell.t_end) prepared = prepare(cell);
-  std::string const making = fmt::format("making the reference of {} in quadruple precision", prepared.cell.problem);
+  std::string const making =
+      fmt::format("making the reference of {} until {:g} s in quadruple precision, or less with --t-end",
+                  prepared.cell.problem, prepared.cell.t_end);
   auto const [reference, why_none] =
       patiently(making, [&] { return References(references_folder()).of(prepared, prepared.problem->horizon()); });
   Score score = bench::score(table, prepared, reference.get(), reading);
