@@ -4,7 +4,6 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <spawn.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -19,6 +18,7 @@
 #include <thread>
 #include <vector>
 
+#include "bench/machine.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace polhode::cli {
@@ -32,7 +32,7 @@ using test::text_of;
 struct Result {
   int code = -1;  ///< the exit code; 128 + n when a signal n ended it
   std::string out, err;
-  long memory = 0;  ///< the most that it had at once [kB]
+  long memory = 0;  ///< the most that was resident at once, as far as it was seen [kB]
 };
 
 /// `words` separated by spaces; '' is an empty one.
@@ -85,14 +85,16 @@ class Process {
   Result finish(std::chrono::seconds limit = std::chrono::seconds(60)) {
     auto const end = std::chrono::steady_clock::now() + limit;
     int status = 0;
-    rusage used{};
-    while (::wait4(pid_, &status, WNOHANG, &used) == 0) {
+    long memory = 0;  // not that of wait4: it has the size of who started the process in it
+    while (::waitpid(pid_, &status, WNOHANG) == 0) {
       if (std::chrono::steady_clock::now() > end) throw std::runtime_error("polhode takes longer than the time limit");
+      std::string const peak = bench::entry_of(fs::path("/proc") / std::to_string(pid_) / "status", "VmHWM");
+      memory = std::max(memory, std::atol(peak.c_str()));
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
     pid_ = 0;
     return {WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status), text_of(caught_.path / "out"),
-            text_of(caught_.path / "err"), used.ru_maxrss};
+            text_of(caught_.path / "err"), memory};
   }
 
  private:
