@@ -22,12 +22,12 @@ using results::Cell;
 // --- Sweeps ----------------------------------------------------------------------------------------------------------
 
 /// One setting of the step control.
-struct Control {
+struct StepControl {
   std::optional<double> h, rtol, atol;
 };
 
 /// An integrator with a control that suits it.
-using Method = std::pair<std::string, Control>;
+using Method = std::pair<std::string, StepControl>;
 
 void check_size(Toml const& at, std::size_t cells) {
   if (cells > max_cells) fail(at, fmt::format("more than {} cells; shorten the axes or split the suite", max_cells));
@@ -57,13 +57,13 @@ auto assign(Member Cell::*member) {
 }
 
 /// The controls that a sweep gives, whether or not an integrator can use them.
-std::vector<Control> read_controls(Toml const& sweep) {
+std::vector<StepControl> read_controls(Toml const& sweep) {
   auto const* h = find(sweep, "h");
   auto const* rtol = find(sweep, "rtol");
   auto const* atol = find(sweep, "atol");
   if (atol && !rtol) fail(*atol, "atol without rtol: give both, or rtol alone");
   if (!h && !rtol) fail(sweep, "[[sweep]]: give h (fixed steps) or rtol (adaptive)");
-  std::vector<Control> controls;
+  std::vector<StepControl> controls;
   if (h) {
     for (double const step : positive_axis(*h, "h")) controls.push_back({step, {}, {}});
   }
@@ -113,7 +113,7 @@ std::vector<Method> read_methods(Toml const& sweep, Vocabulary const& vocabulary
       cell.rtol = rtol;
       cell.atol = atol;
       located(sweep, [&] { check_control(*integrator, cell); });
-      methods.push_back({integrator->name, Control{cell.h, cell.rtol, cell.atol}});
+      methods.push_back({integrator->name, StepControl{cell.h, cell.rtol, cell.atol}});
     }
   }
   for (std::string const key : {"h", "rtol"}) {
