@@ -75,6 +75,7 @@ Trajectory run(PreparedCell const& prepared, Metrics* metrics, Limits const& lim
   std::visit(
       [&]<Space M>(std::unique_ptr<Erased<M>> const& field) {
         Recorder<M> recorder(*field, prepared, metrics, trajectory.history, limits);
+        each_body<M>(field->initial(), [&]<class Body>(Point<Body> const&) { ++trajectory.bodies; });
         try {
           trajectory.outcome = method_named<M>(prepared.cell.integrator).solve(*field, prepared.plan, recorder);
           trajectory.history.events = trajectory.outcome.located.times;
@@ -164,6 +165,7 @@ Measured measure(PreparedCell const& prepared, References& references, std::stri
     record.reference = reference->id;
     record.reference_bar = reference->bar;
   }
+  record.bodies = trajectory.bodies;
   note_work(record, prepared, trajectory.outcome);
   if (trajectory.status == results::Status::ok) {
     note_worth(record, prepared, metrics, trajectory);

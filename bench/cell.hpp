@@ -46,6 +46,7 @@ struct Trajectory {
   results::Status status = results::Status::ok;
   std::string reason;
   Outcome outcome;
+  std::int64_t bodies = 0;
 };
 Trajectory simulate(PreparedCell const& prepared, Limits const& limits = {});
 

@@ -122,6 +122,7 @@ struct Record {
   std::map<std::string, Claim> claims;
   std::optional<CpuTime> cpu_time_s;
   std::optional<double> allocations_per_step;
+  std::optional<std::int64_t> bodies;  ///< that the state is of
 };
 
 /// Calls f(name, unit, member) for every field of a record, in the order of the schema ("" = dimensionless or text).
@@ -164,6 +165,7 @@ void for_each_field(R& r, Visit&& visit) {
   visit("claims", "", r.claims);
   visit("cpu_time_s", "s", r.cpu_time_s);
   visit("allocations_per_step", "", r.allocations_per_step);
+  visit("bodies", "", r.bodies);
 }
 
 /// A sampled history of one run, for figures: row i is (columns[0] at time i, ...). Column 0 is t [s].

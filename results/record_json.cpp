@@ -322,8 +322,8 @@ std::string kind_of(Json const& json) {
 
 Record record_from_json(Json const& json) {
   // Younger than the schema: files from before do not have them, which says the same as null.
-  constexpr std::array<std::string_view, 4> younger{"position_defect_max", "velocity_defect_max",
-                                                    "acceleration_defect_max", "multiplier_error_max"};
+  constexpr std::array<std::string_view, 5> younger{"position_defect_max", "velocity_defect_max",
+                                                    "acceleration_defect_max", "multiplier_error_max", "bodies"};
   Members members = open(json, "run");
   Record record;
   for_each_field(record, [&](char const* name, std::string_view, auto& member) {

@@ -63,6 +63,7 @@ inline Record full_record() {
   record.claims["statement"] = Claim{1.0, std::nullopt, "reproduced"};
   record.cpu_time_s = CpuTime{1.25, 1.0, 1.5, 5};
   record.allocations_per_step = 14.5;
+  record.bodies = 5;
   return record;
 }
 
