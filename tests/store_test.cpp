@@ -343,7 +343,7 @@ class AsNobody {
 TEST_F(Store, ReadOnlyFolderAndFile) {
   fs::path const present = folder / "present.jsonl";
   put(present, meta_line);
-  fs::permissions(present, fs::perms::owner_read | fs::perms::others_read);
+  fs::permissions(present, static_cast<fs::perms>(0444));  // it can be read
   fs::permissions(folder, static_cast<fs::perms>(0555));
   {
     AsNobody const nobody;
@@ -360,7 +360,7 @@ TEST_F(Store, UnreadableFolder) {
   {
     AsNobody const nobody;
     if (!nobody.done()) GTEST_SKIP() << "root that cannot become somebody else";
-    EXPECT_EQ(error_of([&] { read(folder); }), folder.string() + ": cannot read: Permission denied");
+    EXPECT_EQ(error_of([&] { read(folder); }), folder.string() + ": cannot be read: Permission denied");
   }
   fs::permissions(folder, static_cast<fs::perms>(0755));
 }
