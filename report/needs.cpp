@@ -20,13 +20,16 @@ bool is_kept(std::optional<double> drift) {
   return finite(drift).value_or(kept) < kept;
 }
 
-bool is_network(Cell const& c) {
-  return c.problem == "quaternion_sync" || c.problem == "group_consensus" || c.problem == "so3_cooperative";
+/// How many bodies there are, as far as one of its runs says it.
+std::int64_t bodies_of(Instance const& of) {
+  std::int64_t most = 1;
+  for (Record const* run : of.runs) most = std::max(most, run->bodies.value_or(1));
+  return most;
 }
 
 /// True if the parameters say how many craft there are: a network made for its size.
-bool is_sized(Cell const& c) {
-  return is_network(c) && c.set.contains("n");
+bool is_sized(Instance const& of) {
+  return bodies_of(of) > 1 && of.like().set.contains("n");
 }
 
 /// What somebody needs an integrator for, and the rule that chooses one.
@@ -35,48 +38,52 @@ struct Need {
   std::string_view problem;      ///< where these records hold none
   std::string_view rule;         ///< in one sentence, after the problem
   std::optional<double> target;  ///< attitude error that is asked for [rad], where a reference tells it
-  bool (*concerns)(Cell const& of);
+  bool (*concerns)(Instance const& of);
   bool (*serves)(Record const& run);
-  double (*extent)(Cell const& of);  ///< of several problems the one of greatest extent is asked
+  double (*extent)(Instance const& of);  ///< of several problems the one of greatest extent is asked
 };
 
-double no_extent(Cell const&) {
+double no_extent(Instance const&) {
   return 0;
 }
 
 constexpr Need needs[] = {
     {"long free motion", "free_body",
      "norm, energy and |L| kept within 1e-13 over the longest motion here, then 1e-9 rad at the least cost", fine,
-     [](Cell const& c) {
+     [](Instance const& of) {
+       Cell const& c = of.like();
        return c.problem == "free_body" || (c.problem == "tether_capture" && has_word(c.variant, "free"));
      },
      [](Record const& r) {
        return is_kept(r.norm_drift_max) && is_kept(r.energy_drift_max) && is_kept(r.momentum_drift_max);
      },
-     [](Cell const& c) { return c.t_end; }},
+     [](Instance const& of) { return of.like().t_end; }},
     {"smooth loop", "pd_slew plain", "1e-9 rad at the least cost", fine,
-     [](Cell const& c) { return is_headline(c, headlines[1]); }, [](Record const&) { return true; }, no_extent},
+     [](Instance const& of) { return is_headline(of.like(), headlines[1]); }, [](Record const&) { return true; },
+     no_extent},
     {"sampled control", "tether_capture case1", "1e-9 rad at the least cost, steps ending on the samples", fine,
-     [](Cell const& c) { return is_headline(c, headlines[2]); }, [](Record const&) { return true; }, no_extent},
+     [](Instance const& of) { return is_headline(of.like(), headlines[2]); }, [](Record const&) { return true; },
+     no_extent},
     {"sliding mode",
      "dead_zone printed",
      "the end reached and no claim of the paper missed, at the least cost; what slides has no digits to compare",
      {},
-     [](Cell const& c) { return c.problem == "dead_zone" && has_word(c.variant, "printed"); },
+     [](Instance const& of) { return of.like().problem == "dead_zone" && has_word(of.like().variant, "printed"); },
      [](Record const& r) {
        return std::ranges::none_of(r.claims,
                                    [](auto const& claim) { return claim.second.verdict == "not reproduced"; });
      },
      no_extent},
     {"fleets", "quaternion_sync", "1e-9 rad for every craft at the least cost", fine,
-     [](Cell const& c) { return is_network(c) && !is_sized(c); }, [](Record const&) { return true; }, no_extent},
+     [](Instance const& of) { return bodies_of(of) > 1 && !is_sized(of); }, [](Record const&) { return true; },
+     no_extent},
     {"large fleets",
      "quaternion_sync, n",
      "the norm of every craft kept within 1e-13, at the least cost; nothing that large has a reference",
      {},
      is_sized,
      [](Record const& r) { return is_kept(r.norm_drift_max); },
-     [](Cell const& c) { return c.set.at("n").empty() ? 0 : c.set.at("n").front(); }},
+     [](Instance const& of) { return static_cast<double>(bodies_of(of)); }},
 };
 
 /// The runs of a problem that may be recommended, and who of them does it at which cost.
@@ -106,10 +113,11 @@ std::optional<Contest> asked(Facts const& facts, Need const& need) {
   std::tuple<bool, double, bool, std::size_t, std::size_t> most;
   for (Instance const& instance : facts.instances) {
     Cell const& c = instance.like();
-    bool const usual = is_sized(c) || c.set.empty();
-    if (!need.concerns(c) || is_aside(c)) continue;
+    bool const usual = is_sized(instance) || c.set.empty();
+    if (!need.concerns(instance) || is_aside(c)) continue;
     Contest contest = contest_of(need, instance);
-    std::tuple const rank{contest.ran.size() > 1, need.extent(c), usual, contest.ranked.size(), contest.ran.size()};
+    std::tuple const rank{contest.ran.size() > 1, need.extent(instance), usual, contest.ranked.size(),
+                          contest.ran.size()};
     if (best && rank <= most) continue;
     most = rank;
     best = std::move(contest);

@@ -97,7 +97,10 @@ TEST(Needs, SlidingAndSizeAreJudgedWithoutAReference) {
     if (!borne_out) r.claims["layer"].verdict = "not reproduced";
     r.attitude_error_max = r.reference_bar = std::nullopt;
     r.cpu_time_s.reset();
-    if (problem == "quaternion_sync") r.of.set["n"] = {1000};
+    if (problem == "quaternion_sync") {
+      r.of.set["n"] = {1000};
+      r.bodies = 1000;
+    }
     c.records.push_back(r);
   };
   add("dead_zone", "printed,cubic,n2", {"lie_euler", 1, 1, 1, 0}, false);
