@@ -34,6 +34,12 @@ void Group::record(Task const& task) {
   around_.writer.run(task.result.record);
 }
 
+CellResult Group::measured(Task const& task) const {
+  return result_of(
+      measure(task.prepared, around_.references, build_id(), {around_.options.timeout, &around_.interrupted}),
+      task.keep_history);
+}
+
 void Group::measure_all() {
   std::atomic<std::size_t> next = 0;
   std::mutex mutex;
@@ -65,12 +71,6 @@ void Group::measure_all() {
   work();
   for (std::thread& helper : helpers) helper.join();
   if (trouble) std::rethrow_exception(trouble);
-}
-
-CellResult Group::measured(Task const& task) const {
-  return result_of(
-      measure(task.prepared, around_.references, build_id(), {around_.options.timeout, &around_.interrupted}),
-      task.keep_history);
 }
 
 /// The same with a process for each cell. There is no other thread then, and the references are made before.

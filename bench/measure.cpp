@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "results/statistics.hpp"
+
 namespace polhode::bench {
 namespace {
 
@@ -13,13 +15,6 @@ constexpr double decades_kept = 4;
 
 double angle(Vec3<Quad> const& a, Vec3<Quad> const& b) {
   return double(atan2(length(cross(a, b)), dot(a, b)));
-}
-
-double median(std::vector<double> values) {
-  auto const middle = values.begin() + std::ptrdiff_t(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  if (values.size() % 2 == 1) return *middle;
-  return (*middle + *std::max_element(values.begin(), middle)) / 2;
 }
 
 }  // namespace
@@ -58,7 +53,7 @@ std::optional<double> growth_exponent(std::vector<double> const& times, std::vec
   for (std::size_t i = 0; i < points.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       slopes.push_back((points[i].second - points[j].second) / (points[i].first - points[j].first));
-  return median(std::move(slopes));
+  return results::median(std::move(slopes));
 }
 
 Metrics::Metrics(UsableReference const* reference, BodyParameters const* free_body, double t_end,
@@ -176,7 +171,7 @@ void Metrics::fill(results::Record& record) const {
     record.position_defect_max = position_defect_;
     record.velocity_defect_max = velocity_defect_;
     record.acceleration_defect_max = acceleration_defect_;
-    if (reference_) record.multiplier_error_max = multiplier_error_ / largest_multiplier_;
+    if (reference_ && largest_multiplier_ > 0) record.multiplier_error_max = multiplier_error_ / largest_multiplier_;
   }
   if (!reference_) return;
   if (attitudes) {

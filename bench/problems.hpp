@@ -92,34 +92,26 @@ std::vector<std::string_view> formulation_names();
 
 namespace detail {
 template <class D>
-struct FormulationsOf {
-  using type = Formulations;
-};
+auto formulations_of() {
+  if constexpr (requires { typename D::Formulations; })
+    return typename D::Formulations{};
+  else
+    return Formulations{};
+}
 template <class D>
-  requires requires {
-    typename D::Formulations;
-  }
-struct FormulationsOf<D> {
-  using type = typename D::Formulations;
-};
-template <class D>
-struct TimedFormulationsOf {
-  using type = TimedFormulations;
-};
-template <class D>
-  requires requires {
-    typename D::TimedFormulations;
-  }
-struct TimedFormulationsOf<D> {
-  using type = typename D::TimedFormulations;
-};
+auto timed_formulations_of() {
+  if constexpr (requires { typename D::TimedFormulations; })
+    return typename D::TimedFormulations{};
+  else
+    return TimedFormulations{};
+}
 }  // namespace detail
 /// The formulations that D can be written in: all of one body, unless D says otherwise.
 template <Definition D>
-using FormulationsOf = typename detail::FormulationsOf<D>::type;
+using FormulationsOf = decltype(detail::formulations_of<D>());
 /// Those in which it is timed.
 template <Definition D>
-using TimedFormulationsOf = typename detail::TimedFormulationsOf<D>::type;
+using TimedFormulationsOf = decltype(detail::timed_formulations_of<D>());
 
 /// Each problem's own translation units define these two; the second those of raced problems.
 /// Methods is one of RaceLists, or a list that a binary adds.

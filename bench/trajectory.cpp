@@ -13,6 +13,7 @@
 
 #include "bench/messages.hpp"
 #include "bench/text.hpp"
+#include "results/statistics.hpp"
 #include "results/whole_file.hpp"
 
 namespace polhode::bench {
@@ -189,9 +190,7 @@ void note_gaps(TrajectoryTable& table) {
   for (std::size_t i = 1; i < table.rows(); ++i)
     if (table.times[i] > table.times[i - 1]) intervals.push_back(table.times[i] - table.times[i - 1]);
   if (intervals.empty()) return;
-  auto const middle = intervals.begin() + std::ptrdiff_t(intervals.size() / 2);
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  double const typical = *middle;
+  double const typical = results::median(std::move(intervals));
   std::size_t gaps = 0, widest = 0;
   double width = 0;
   for (std::size_t i = 1; i < table.rows(); ++i) {
