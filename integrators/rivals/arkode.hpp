@@ -187,7 +187,9 @@ class DirkMemory {
   Work before_;
 };
 
-/// ARKODE from stop to stop.   Memory  ErkMemory or DirkMemory.   fails  with the status of its error code
+/// ARKODE from stop to stop; Memory is ErkMemory or DirkMemory.
+///
+/// fails  with the status of its error code
 template <class Memory, Problem P>
 class ArkodeStepper {
   using M = typename P::Space;

@@ -109,7 +109,9 @@ class CvodeMemory {
   Work before_;
 };
 
-/// CVODE from stop to stop, on any problem of flat coordinates. fails  with the status of its error code
+/// CVODE from stop to stop, on any problem of flat coordinates.
+///
+/// fails  with the status of its error code
 template <Problem P>
 class CvodeStepper {
   using M = typename P::Space;

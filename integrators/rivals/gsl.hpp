@@ -90,11 +90,10 @@ class GslFixed {
   }
 
   Status advance(Point<M>& x, double t, double t_end) {
-    auto const whole = std::int64_t(std::floor((t_end - t) / h_ + 1e-9));
-    double const reached = t + double(whole) * h_;
     return run(x, [&] {
-      for (std::int64_t i = 0; i < whole; ++i) step(t + double(i) * h_, h_);
-      if ((t_end - reached) / h_ > 1e-9) step(reached, t_end - reached);
+      in_equal_steps(t, t_end, h_, [&](double from, double h, std::int64_t n) {
+        for (std::int64_t i = 0; i < n; ++i) step(from + double(i) * h, h);
+      });
     });
   }
   /// One step to t_end, however long.
@@ -149,11 +148,8 @@ class GslAdaptive {
   }
 
   Status advance(Point<M>& x, double t, double t_end) {
-    for (std::int64_t steps = 0; t < t_end; ++steps) {
-      if (steps == most_steps) return Status::max_steps;
-      if (Status const status = step(x, t, t_end); status != Status::ok) return status;
-    }
-    return Status::ok;
+    return in_own_steps(
+        t, t_end, [&](double& now) { return step(x, now, t_end); }, [&] { return steps_; });
   }
   /// x is read at a restart; between restarts a method with a history goes on from its own.
   Status step(Point<M>& x, double& t, double t_end) {
@@ -189,8 +185,6 @@ class GslAdaptive {
   Projections projections() const { return projections_; }
 
  private:
-  static constexpr std::int64_t most_steps = 10'000'000;
-
   static Status status_of(int code) {
     switch (code) {
       case GSL_EMAXITER:

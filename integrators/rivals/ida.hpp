@@ -112,7 +112,9 @@ class IdaMemory {
   Work before_;
 };
 
-/// IDA from stop to stop, on a system of ida_systems.hpp. fails  with the status of its error code
+/// IDA from stop to stop, on a system of ida_systems.hpp.
+///
+/// fails  with the status of its error code
 template <class System>
 class IdaStepper {
   using X = typename System::State;

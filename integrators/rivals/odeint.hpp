@@ -52,26 +52,28 @@ class OdeintFixed {
       : system_{LibraryField<P>(problem)}, y_(OdeintState<M>::of(problem.initial())), h_(control.h), policy_(policy) {}
 
   Status advance(Point<M>& x, double t, double t_end) {
-    store(x, y_.data());
-    auto const whole = std::int64_t(std::floor((t_end - t) / h_ + 1e-9));
-    double const reached = t + double(whole) * h_;
-    for (std::int64_t i = 0; i < whole; ++i) step(t + double(i) * h_, h_);
-    if ((t_end - reached) / h_ > 1e-9) step(reached, t_end - reached);
-    load(x, y_.data());
-    return all_finite(x) ? Status::ok : Status::diverged;
+    return run(x, [&] {
+      in_equal_steps(t, t_end, h_, [&](double from, double h, std::int64_t n) {
+        for (std::int64_t i = 0; i < n; ++i) step(from + double(i) * h, h);
+      });
+    });
   }
   /// One step to t_end, however long.
   Status one_step(Point<M>& x, double t, double t_end) {
-    store(x, y_.data());
-    step(t, t_end - t);
-    load(x, y_.data());
-    return all_finite(x) ? Status::ok : Status::diverged;
+    return run(x, [&] { step(t, t_end - t); });
   }
   void restart() { stepper_.emplace(); }
   Work work() const { return work_; }
   Projections projections() const { return projections_; }
 
  private:
+  template <class F>
+  Status run(Point<M>& x, F take_steps) {
+    store(x, y_.data());
+    take_steps();
+    load(x, y_.data());
+    return all_finite(x) ? Status::ok : Status::diverged;
+  }
   void step(double t, double h) {
     stepper_->do_step(system_, y_, t, h);
     ++work_.steps;
@@ -103,13 +105,12 @@ class OdeintControlled {
         stepper_(make()) {}
 
   Status advance(Point<M>& x, double t, double t_end) {
-    while (t < t_end)
-      if (Status const status = step(x, t, t_end); status != Status::ok) return status;
-    return Status::ok;
+    return in_own_steps(
+        t, t_end, [&](double& now) { return step(x, now, t_end); }, [&] { return work_.steps + work_.rejected; });
   }
   Status step(Point<M>& x, double& t, double t_end) {
     store(x, y_.data());
-    for (int trial = 0; trial < most_trials; ++trial) {
+    for (int trial = 0; trial < most_trials_of_a_step; ++trial) {
       double h = std::min(h_, t_end - t);
       bool const last = h >= t_end - t;
       double const tried = h;
@@ -141,7 +142,7 @@ class OdeintControlled {
   Projections projections() const { return projections_; }
 
  private:
-  static constexpr int most_trials = 1000;
+  static constexpr int most_trials_of_a_step = 1000;
   static constexpr double first_step = 0.01;  ///< [s]; Odeint asks its user for one, and corrects it within a few steps
   ControlledStepper make() const {
     if constexpr (requires { typename ControlledStepper::error_checker_type; })
