@@ -8,7 +8,7 @@
 ///
 /// q and p turn alike, so |q|, |p|, q.p and the angular momentum in space, 1/2 vec(p conj(q)), are quadratic invariants
 /// of the free body, which Gauss keeps to round-off; H is of degree 4, so it oscillates. Torques enter as generalised
-/// forces.
+/// forces, those of a potential as the slope of one on all of R^4 that does not feel |q|: stages leave the sphere.
 ///
 /// Source: Hairer, Lubich & Wanner, Geometric Numerical Integration, VI.4 (Gauss is symplectic), VII.5 (rigid body)
 #include <memory>
@@ -57,8 +57,10 @@ class CanonicalField {
   Velocity<Space> operator()(S const& t, State const& x) const {
     Vec3<S> const omega = rate(Space::momentum(x));
     Velocity<Space> v{quaternion_rate(x.first, omega), quaternion_rate(x.second, omega)};
-    if (!body_->torque_free())
-      add(v.second, Space::conjugate(x.first, body_->torque(t, {A::from_attitude(x.first), omega})));
+    if (!body_->torque_free()) {
+      Vec3<S> const torque = body_->torque(t, {A::from_attitude(normalised(x.first)), omega});
+      add(v.second, S(S(1.0) / dot(x.first, x.first)), Space::conjugate(x.first, torque));
+    }
     return v;
   }
   State initial() const { return canonical(body_->initial()); }

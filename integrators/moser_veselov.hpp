@@ -110,7 +110,8 @@ bool moser_veselov_turn(Vec3<S> const& J, Vec3<S> const& v, Vec3<S>& c, std::int
   });
 }
 
-/// order 2, 4, 6, 8 or 10; implicit, no evaluation of the field; symmetric, symplectic
+/// order 2, 4, 6, 8 or 10; implicit, no evaluation of the field; symmetric; order 2 is symplectic. The others are so in
+/// the momentum alone: their moments depend on the state, and that of the attitude feels it.
 /// keeps  the norm, energy, |L| and the direction of L in space to round-off
 /// fails  Status::nonlinear_fail if Newton does not converge
 template <int order>
@@ -122,11 +123,13 @@ struct MoserVeselov {
       .family = Family::rigid_body,
       .order = order,
       .needs = Needs::free_body,
-      .preserves = keeps_norm | keeps_energy | keeps_momentum | keeps_momentum_direction | is_symplectic | is_symmetric,
+      .preserves = keeps_norm | keeps_energy | keeps_momentum | keeps_momentum_direction | is_symmetric |
+                   (order == 2 ? is_symplectic : keeps_nothing),
       .source = order == 2 ? "Moser & Veselov (1991); the same as RATTLE: McLachlan & Zanna (2005)"
                            : "Hairer & Vilmart (2006), J. Phys. A 39, 13225; round-off: Vilmart (2008)",
       .pitfall = order == 2 ? "every invariant is right and the phase is wrong by O(h^2)"
-                            : "its moments depend on h, energy and |L|: of no use under a torque"};
+                            : "its moments depend on h, energy and |L|: of no use under a torque, and symplectic for "
+                              "the momentum alone, not with the attitude"};
 
   template <class R>
   struct Method {
