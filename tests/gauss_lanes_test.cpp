@@ -1,46 +1,14 @@
-/// Gauss with its stages in lanes: the solution, its order, what it keeps, the same bits whatever the registers.
-#include "integrators/gauss_lanes.hpp"
-
-#include <gtest/gtest.h>
-
+/// Gauss with its stages in lanes, in equal steps: the solution, its order, what it keeps, the same bits whatever the
+/// registers.
 #include <cmath>
-#include <cstring>
 
-#include "integrators/gauss.hpp"
-#include "problems/erased.hpp"
-#include "problems/free_body.hpp"
 #include "problems/gravity_gradient.hpp"
-#include "problems/pd_slew.hpp"
-#include "problems/tether_capture.hpp"
+#include "tests/lane_runs.hpp"
 
 namespace polhode {
 namespace {
 
-template <class D>
-auto field_of(D const& definition) {
-  return definition.template field<double, FlatQuaternion, true>();
-}
-/// The attitude at t_end by Gauss in quadruple precision.
-template <class D>
-Quat<Quad> exact_attitude(D const& definition, double t_end) {
-  auto const field = definition.template field<Quad, S3, true>();
-  auto x = field.initial();
-  EXPECT_EQ(Gauss<8>{}.bind(field, FixedStep{0.25}, NormPolicy::none).advance(x, 0, Quad(t_end)), Status::ok);
-  return x.first;
-}
-double error_of(BodyPoint const& x, Quat<Quad> const& exact) {
-  return double(angle_between(Quat<Quad>{x.first.x, x.first.y, x.first.z, x.first.w}, exact));
-}
-template <class Method, class Control, class P>
-BodyPoint solve(Method const& method, Control control, P& problem, double t_end) {
-  BodyPoint x = problem.initial();
-  auto stepper = method.bind(std::as_const(problem), control, NormPolicy::none);
-  EXPECT_EQ(stepper.advance(x, 0, t_end), Status::ok);
-  return x;
-}
-bool same_bits(BodyPoint const& a, BodyPoint const& b) {
-  return std::memcmp(&a, &b, sizeof a) == 0;
-}
+using namespace test;
 
 TEST(GaussLanes, ReachesRoundOffInFewSteps) {
   FreeBody const free{Choice{}};
@@ -72,15 +40,13 @@ template <class D>
 void expect_same_bits(D const& definition, double t_end) {
   auto const typed = field_of(definition);
   auto const erased = erase_type(typed);
-  auto const compare = [&](auto const& method, auto control) {
+  auto const compare = [&](auto const& method, FixedStep control) {
     EXPECT_TRUE(same_bits(solve(method, control, typed, t_end), solve(method, control, *erased, t_end)));
   };
   compare(GaussLawson<4>{}, FixedStep{0.7});
   compare(GaussLawson<8>{}, FixedStep{4});
   compare(Gauss8LawsonSweeps6{}, FixedStep{4});
   compare(Gauss8LawsonBalanced{}, FixedStep{4});
-  compare(GaussLawson<4>{}, Adaptive{1e-6, 1e-8});
-  compare(GaussLawson<8>{}, Adaptive{1e-9, 1e-11});
 }
 TEST(GaussLanes, GiveTheSameBitsWhateverTheRegisters) {
   expect_same_bits(FreeBody(Choice{}), 50);
@@ -114,39 +80,12 @@ TEST(GaussLanes, KeepNormEnergyAndMomentumToRoundOff) {
   }
 }
 
-TEST(GaussLanes, ChooseStepsSoThatTheErrorIsBelowTheTolerance) {
-  auto const check = [](auto const& definition, double t_end) {
-    auto const field = field_of(definition);
-    Quat<Quad> const exact = exact_attitude(definition, t_end);
-    for (double tolerance : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) {
-      double const eight = error_of(solve(GaussLawson<8>{}, Adaptive{tolerance, 0}, field, t_end), exact);
-      double const four = error_of(solve(GaussLawson<4>{}, Adaptive{tolerance, 0}, field, t_end), exact);
-      EXPECT_LT(eight, tolerance);
-      EXPECT_GT(eight, 1e-5 * tolerance);
-      EXPECT_LT(four, 10 * tolerance);
-      EXPECT_GT(four, 1e-5 * tolerance);
-    }
-  };
-  check(FreeBody(Choice{}), 50);
-  check(PdSlew(Choice{}), 60);
-}
-
-/// Sweeps a step.
-template <class Method, class Control, class P>
-double sweeps_a_step(Method const& method, Control control, P const& problem, double t_end) {
-  auto stepper = method.bind(problem, control, NormPolicy::none);
-  BodyPoint x = problem.initial();
-  EXPECT_EQ(stepper.advance(x, 0, t_end), Status::ok);
-  Work const work = stepper.work();
-  return double(work.iterations.value_or(0)) / double(work.steps + work.rejected);
-}
 // Feedback couples rates and attitude: without what speeds them up it takes 14 sweeps to round-off.
 TEST(GaussLanes, NeedFewSweepsUnderFeedback) {
   auto const slew = field_of(PdSlew(Choice{}));
   EXPECT_LT(sweeps_a_step(GaussLawson<8>{}, FixedStep{10}, slew, 60), 12.5);
   EXPECT_LT(sweeps_a_step(GaussLawson<8>{}, FixedStep{5}, slew, 60), 10);
   EXPECT_LT(sweeps_a_step(Gauss8LawsonBalanced{}, FixedStep{10}, slew, 60), 6.6);
-  EXPECT_LT(sweeps_a_step(GaussLawson<8>{}, Adaptive{1e-9, 1e-12}, slew, 60), 7.5);
 }
 // What steers the sweeps does not enter their result.
 TEST(GaussLanes, SolveTheStagesOfGauss) {
@@ -183,52 +122,29 @@ TEST(GaussLanes, BalanceTheErrorOfTheSweepsWithThatOfTheSteps) {
 // A stepper that was used before gives what a new one gives.
 TEST(GaussLanes, RepeatARunToTheLastBit) {
   auto const field = field_of(PdSlew(Choice{}));
-  auto const twice = [&](auto stepper, auto begin) {
+  auto const twice = [&](auto stepper) {
     BodyPoint first = field.initial(), second = first;
     EXPECT_EQ(stepper.advance(first, 0, 60), Status::ok);
-    begin(stepper);
+    stepper.restart();
     EXPECT_EQ(stepper.advance(second, 0, 60), Status::ok);
     EXPECT_TRUE(same_bits(first, second));
   };
-  auto const restart = [](auto& stepper) { stepper.restart(); };
-  auto const begin = [](auto& stepper) { stepper.begin(); };
-  twice(GaussLawson<8>{}.bind(field, FixedStep{7}, NormPolicy::none), restart);
-  twice(Gauss8LawsonBalanced{}.bind(field, FixedStep{10}, NormPolicy::none), restart);
-  for (double tolerance : {1e-4, 1e-7, 1e-10})
-    twice(GaussLawson<8>{}.bind(field, Adaptive{tolerance, 0}, NormPolicy::none), begin);
+  twice(GaussLawson<8>{}.bind(field, FixedStep{7}, NormPolicy::none));
+  twice(Gauss8LawsonBalanced{}.bind(field, FixedStep{10}, NormPolicy::none));
 }
 
-// A body at rest on which a torque begins to act; one on which nothing acts.
-TEST(GaussLanes, BeginAtRest) {
+TEST(GaussLanes, LeaveABodyAtRest) {
   Choice choice;
   choice.set["omega0"] = {0, 0, 0};
-  PdSlew const slew{choice};
-  auto const pushed = field_of(slew);
-  EXPECT_LT(error_of(solve(GaussLawson<8>{}, Adaptive{1e-9, 1e-12}, pushed, 60), exact_attitude(slew, 60)), 1e-9);
   auto const still = field_of(FreeBody(choice));
   EXPECT_TRUE(same_bits(solve(GaussLawson<8>{}, FixedStep{10}, still, 50), still.initial()));
-  EXPECT_TRUE(same_bits(solve(GaussLawson<8>{}, Adaptive{1e-9, 1e-12}, still, 50), still.initial()));
 }
 
-/// The state after `samples` samples of a controller, the torque held between them.
-template <class P, class Method, class Control>
-BodyPoint sampled_run(P problem, Method const& method, Control control, double period, int samples) {
-  BodyPoint x = problem.initial();
-  auto stepper = method.bind(std::as_const(problem), control, NormPolicy::none);
-  for (int i = 0; i < samples; ++i) {
-    problem.sample(i * period, x);
-    stepper.restart();
-    EXPECT_EQ(stepper.advance(x, i * period, (i + 1) * period), Status::ok);
-  }
-  return x;
-}
 TEST(GaussLanes, HoldTheTorqueOfTheLastSample) {
-  auto const compare = [](auto const& field) {
+  for_each_sampled([](auto const& field) {
     BodyPoint const gauss = sampled_run(field, Gauss<4>{}, FixedStep{0.05}, 0.1, 200);
     BodyPoint const fixed = sampled_run(field, GaussLawson<4>{}, FixedStep{0.1}, 0.1, 200);
-    BodyPoint const chosen = sampled_run(field, GaussLawson<8>{}, Adaptive{1e-10, 1e-12}, 0.1, 200);
     EXPECT_LT(angle_between(gauss.first, fixed.first), 1e-13);
-    EXPECT_LT(angle_between(gauss.first, chosen.first), 1e-9);
     BodyPoint const erased = [&] {
       auto problem = erase_type(field);
       BodyPoint x = problem->initial();
@@ -241,12 +157,6 @@ TEST(GaussLanes, HoldTheTorqueOfTheLastSample) {
       return x;
     }();
     EXPECT_TRUE(same_bits(fixed, erased));
-  };
-  compare(field_of(TetherCapture(Choice{})));  // saturates
-  Choice quantized;
-  quantized.words = {"quantized"};
-  PdSlew(quantized).with_field<double, FlatQuaternion, true>([&](auto const& field) {
-    if constexpr (SampledProblem<std::remove_cvref_t<decltype(field)>>) compare(field);
   });
 }
 
@@ -270,8 +180,6 @@ TEST(GaussLanes, SayWhenStagesCannotBeSolved) {
   x = field.initial();
   x.second.x = std::nan("");
   EXPECT_EQ(stepper.advance(x, 0, 2000), Status::diverged);
-  auto chosen = GaussLawson<8>{}.bind(field, Adaptive{1e-9, 1e-12}, NormPolicy::none);
-  EXPECT_NE(chosen.advance(x, 0, 60), Status::ok);
 }
 
 }  // namespace
