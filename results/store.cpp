@@ -35,8 +35,8 @@ struct Lines {
   std::string torn;
 };
 
-/// The next line, without its newline; false for what stands after the last one. std::getline, but of a file that is no
-/// text it takes a part into memory, and false.
+/// The next line, without its newline; false for what stands after the last one, and for more than `longest` bytes, of
+/// which no more is taken: std::getline would fill the memory.
 bool next_line(std::istream& in, std::string& line, std::size_t longest) {
   line.clear();
   for (std::array<char, 1 << 12> part; line.size() <= longest; in.clear()) {
