@@ -65,7 +65,7 @@ struct Exact {
       .needs = Needs::free_body,
       .preserves = keeps_norm | keeps_energy | keeps_momentum | keeps_momentum_direction | is_symplectic | is_symmetric,
       .source = "van Zon & Schofield (2007), J. Comput. Phys. 225, 145; Celledoni, Faso, Safstrom & Zanna (2008)",
-      .pitfall = "near the separatrix the data's own rounding errors grow without it",
+      .pitfall = "near the separatrix rounding errors of the data themselves grow, whoever integrates",
       .no_feedback = arc,
       .no_relaxation = arc};
   template <RigidBodyProblem P>

@@ -13,9 +13,11 @@
 namespace polhode {
 
 /// order 2s, s stages (1 to 8); keeps the norm, energy and |L| of a free body. Symmetric on flat coordinates; on a
-/// group for s = 1 alone, because the chart is centred at the beginning of the step. evaluations  s a sweep, typically
-/// 3 to 10 sweeps a step; one more after a restart, and in every adaptive step fails        Status::nonlinear_fail if
-/// neither the fixed point nor Newton solves the stages
+/// group for s = 1 alone, because the chart is centred at the beginning of the step.
+///
+/// evaluations  s a sweep, typically 3 to 10 sweeps a step; one more after a restart, and in every adaptive step
+///
+/// fails  Status::nonlinear_fail if neither the fixed point nor Newton solves the stages
 struct GaussOf {
   int stages;
 

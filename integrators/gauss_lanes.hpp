@@ -63,7 +63,9 @@ class LawsonRun {
 };
 }  // namespace detail
 
-/// Equal steps of h. fails   Status::nonlinear_fail where a step's sweeps do not come to rest, Status::diverged
+/// Equal steps of h.
+///
+/// fails  Status::nonlinear_fail where a step's sweeps do not come to rest, Status::diverged
 template <int s, Problem P>
 class LawsonFixed : public detail::LawsonRun<s, P> {
   using Base = detail::LawsonRun<s, P>;
@@ -131,7 +133,9 @@ class LawsonFixed : public detail::LawsonRun<s, P> {
   std::int64_t steps_ = 0;
 };
 
-/// Steps of its own choice. fails   Status::step_underflow below 10 ulp of t, Status::nonlinear_fail if that is because
+/// Steps of its own choice.
+///
+/// fails  Status::step_underflow below 10 ulp of t, Status::nonlinear_fail if that is because
 /// stages cannot be solved, Status::max_steps after `most_trials` trials in one advance, Status::diverged
 template <int s, Problem P>
 class LawsonControlled : public detail::LawsonRun<s, P> {

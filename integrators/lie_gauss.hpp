@@ -34,9 +34,10 @@ struct MiddleGauss {
   }
 };
 
-/// order 2s, s stages; keeps the norm, and energy and |L| of a free body; symmetric
-/// One sweep evaluates each stage once, from the newest values of the others. Iteration ends when the greatest change
-/// of a sweep has no new minimum twice running. fails  Status::nonlinear_fail if it comes to rest far from a solution
+/// order 2s, s stages; keeps the norm, and energy and |L| of a free body; symmetric. One sweep evaluates each stage
+/// once, from the newest values of the others.
+///
+/// fails  Status::nonlinear_fail if the sweeps come to rest far from a solution
 template <int s>
 struct LieGauss {
   template <class R>

@@ -11,8 +11,9 @@
 namespace polhode {
 
 /// The stepper of dopri5_ode45. Outputs do not shorten steps: between steps the continuous extension of order 4
-/// answers. err = max |e_i| / max(|y_i|, |y_new,i|, atol / rtol) is held below rtol. fails   Status::step_underflow
-/// below 16 ulp of t, Status::diverged if the slope is not finite
+/// answers. err = max |e_i| / max(|y_i|, |y_new,i|, atol / rtol) is held below rtol.
+///
+/// fails  Status::step_underflow below 16 ulp of t, Status::diverged if the slope is not finite
 template <Problem P>
 class Ode45Stepper {
   using M = typename P::Space;
@@ -148,7 +149,7 @@ class Ode45Stepper {
   Projections projections_;
 };
 
-/// The pair under that control.   order 5 locally, adaptive only, 6 evaluations a step; keeps nothing
+/// The pair under that control.   order 5, by local extrapolation, adaptive only, 6 evaluations a step; keeps nothing
 struct Dopri5Ode45 {
   static constexpr MethodInfo info{
       .name = "dopri5_ode45",

@@ -112,28 +112,29 @@ struct TaylorSegment {
 /// `longest` [s] fall below `tolerance` relative to the state. The step h keeps the last terms below that, too.
 /// fails   h = 0 if the series has no radius of convergence to speak of or is not finite
 template <class R, int degree, SeriesProblem P>
-  requires std::same_as<typename P::Space::Scalar, Jet<R, degree>> TaylorSegment<R, degree> expand(
-      P const& p, std::vector<R> const& state, R const& t, R const& longest, double tolerance) {
-    SolutionSeries<P> series(p);
-    double size = 1;
-    for (R const& component : state) size = std::max(size, std::fabs(double(component)));
-    double const span = double(longest);
-    int small = 0;
-    series.grow(state.begin(), t, degree, [&] {
-      int const top = series.degree();
-      small = series.largest(top) * std::pow(span, top) < tolerance * size ? small + 1 : 0;
-      return small == 2;
-    });
+  requires(std::same_as<typename P::Space::Scalar, Jet<R, degree>>)
+TaylorSegment<R, degree> expand(P const& p, std::vector<R> const& state, R const& t, R const& longest,
+                                double tolerance) {
+  SolutionSeries<P> series(p);
+  double size = 1;
+  for (R const& component : state) size = std::max(size, std::fabs(double(component)));
+  double const span = double(longest);
+  int small = 0;
+  series.grow(state.begin(), t, degree, [&] {
     int const top = series.degree();
-    double h = span;
-    for (int term : {top - 1, top}) {
-      double const last = series.largest(term);
-      if (!std::isfinite(last)) h = 0;
-      if (last > 0) h = std::min(h, std::pow(tolerance * size / last, 1.0 / term));
-    }
-    bool const reaches = h >= span * (1 - 1e-12);
-    return {t, reaches ? longest : R(h), std::move(series.components())};
+    small = series.largest(top) * std::pow(span, top) < tolerance * size ? small + 1 : 0;
+    return small == 2;
+  });
+  int const top = series.degree();
+  double h = span;
+  for (int term : {top - 1, top}) {
+    double const last = series.largest(term);
+    if (!std::isfinite(last)) h = 0;
+    if (last > 0) h = std::min(h, std::pow(tolerance * size / last, 1.0 / term));
   }
+  bool const reaches = h >= span * (1 - 1e-12);
+  return {t, reaches ? longest : R(h), std::move(series.components())};
+}
 
 // ---- The method -----------------------------------------------------------------------------------------------------
 
@@ -331,7 +332,7 @@ struct Taylor : TaylorOfDegree<20> {
                                    .needs = Needs::quaternion,
                                    .source = "Jorba & Zou (2005), Experimental Mathematics 14, 99",
                                    .pitfall = "a kink of the field within a step is not seen",
-                                   .no_relaxation = "its series leave the norm to round-off: nothing to relax"};
+                                   .no_relaxation = "its series answer between steps, in time that is not relaxed"};
 };
 
 }  // namespace polhode
