@@ -109,7 +109,7 @@ Held hold_golden(Bound const& bound, CheckedCell const& cell, GoldenByCell const
 }
 
 /// The worse of two judgements of one value.
-Held worse(Held a, Held b) {
+Held worse(Held const& a, Held const& b) {
   return b.excess > a.excess ? b : a;
 }
 

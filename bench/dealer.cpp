@@ -98,7 +98,7 @@ class Dealer {
 
  private:
   void deal() {
-    std::int64_t const window = std::max<std::int64_t>(1024, 16 * channel_.size());
+    std::int64_t const window = std::max<std::int64_t>(1024, std::int64_t{16} * channel_.size());
     for (; !stop_ && !free_.empty() && next_ < std::min(count_, due_ + window); ++next_) {
       int const rank = free_.back();
       free_.pop_back();

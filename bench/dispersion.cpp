@@ -97,7 +97,7 @@ class Reader {
     }
     auto const open = text.find('(');
     std::string_view const name = trimmed(text.substr(0, open));
-    auto const form = std::ranges::find(forms, name, &Form::name);
+    auto const* const form = std::ranges::find(forms, name, &Form::name);
     if (form == forms.end()) {
       std::string const near = nearest(name, names);
       refuse(fmt::format("unknown distribution {}; {}", quote(name),

@@ -12,19 +12,13 @@ std::size_t place_of(std::vector<Column> const& columns, std::string_view name) 
   return std::size_t(std::ranges::find(columns, name, &Column::name) - columns.begin());
 }
 
-/// Of one body: | q.q - 1 | of quaternions, else the space's own measure.
+/// Of one body: how far its attitude is from the constraint, as its space measures it; 0 without an attitude.
 template <SmallSpace M>
 double defect_of(Point<M> const& x) {
-  if constexpr (Triple<M>)
-    return 0;
-  else if constexpr (!Attitude<M>)
-    return defect_of<typename M::Factor>(x.first);
-  else if constexpr (std::same_as<Point<M>, Quat<double>>)
-    return std::fabs(dot(x, x) - 1);
-  else if constexpr (M::constrained)
-    return std::fabs(M::defect(x));
+  if constexpr (Attitude<M> || Triple<M>)
+    return M::defect(x);
   else
-    return 0;
+    return defect_of<typename M::Factor>(x.first);
 }
 
 /// Looks at one sample at samples and output times.

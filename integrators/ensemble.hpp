@@ -128,7 +128,7 @@ struct EnsembleKernel {
   /// What is made and handed over is code of all kinds; the steps alone are for chosen registers.
   template <class Steps>
   void go(Bodies const& bodies, Steps const& steps) const {
-    constexpr std::int64_t in_group = blocks_in_turn * lanes;
+    constexpr std::int64_t in_group = std::int64_t{blocks_in_turn} * lanes;
     for (std::int64_t first = bodies.first; first < bodies.last; first += in_group) {
       Bodies const rest{first, bodies.last};
       auto group = group_at(rest, std::make_integer_sequence<int, blocks_in_turn>{});
