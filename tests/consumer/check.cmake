@@ -2,9 +2,7 @@
 #   cmake -D build=FOLDER -D config=NAME -D generator=NAME -D compiler=FILE -P check.cmake
 set(work ${build}/consumer)
 file(REMOVE_RECURSE ${work})
-macro(must)
-  execute_process(COMMAND ${ARGN} COMMAND_ERROR_IS_FATAL ANY)
-endmacro()
+include(${CMAKE_CURRENT_LIST_DIR}/steps.cmake)
 
 must(${CMAKE_COMMAND} --install ${build} --config ${config} --prefix ${work}/prefix)
 must(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${work}/build -G ${generator} -D CMAKE_CXX_COMPILER=${compiler}

@@ -1,7 +1,6 @@
 # Follows what the READMEs of integrators/ and problems/ say of a project of one's own: their code blocks are put in
 # place, their commands are run with an installed Polhode, and what they promise is looked for. Then a wrong claim must
-# fail. It is done outside the tree, because that is where a stranger stands, and because a line in a list of the clone
-# would compile that whole list again.
+# fail. (In a clone: clone.cmake.)
 #   cmake -D build=FOLDER -D sources=FOLDER -D generator=NAME -D compiler=FILE -D launcher=COMMAND
 #         -D from=install|deb -P follow.cmake
 # from=deb makes packages in a build folder of their own, FOLDER-package, and unpacks them.
@@ -9,9 +8,7 @@ set(work ${build}/follow-${from})
 set(project ${work}/project)
 file(REMOVE_RECURSE ${work})
 file(MAKE_DIRECTORY ${project})
-macro(must)
-  execute_process(COMMAND ${ARGN} COMMAND_ERROR_IS_FATAL ANY)
-endmacro()
+include(${CMAKE_CURRENT_LIST_DIR}/steps.cmake)
 
 # ---- Install --------------------------------------------------------------------------------------------------------
 if(from STREQUAL deb)
@@ -36,20 +33,6 @@ else()
 endif()
 
 # ---- Put the blocks in place ----------------------------------------------------------------------------------------
-# The code block of README that follows the comment <!-- NAME -->.
-function(code_block readme name result)
-  file(READ ${sources}/${readme} text)
-  set(opening "<!-- ${name} -->\n```")
-  string(FIND "${text}" "${opening}" start)
-  if(start LESS 0)
-    message(FATAL_ERROR "${readme} has no block ${name}")
-  endif()
-  string(SUBSTRING "${text}" ${start} -1 text)
-  string(REGEX REPLACE "^<!--[^\n]*\n```[^\n]*\n" "" text "${text}")
-  string(FIND "${text}" "\n```" end)
-  string(SUBSTRING "${text}" 0 ${end} text)
-  set(${result} "${text}\n" PARENT_SCOPE)
-endfunction()
 foreach(name IN ITEMS heun.hpp plugin/CMakeLists.txt plugin/mine.toml)
   code_block(integrators/README.md tests/consumer/${name} text)
   cmake_path(GET name FILENAME file)
@@ -66,12 +49,6 @@ execute_process(COMMAND ${CMAKE_COMMAND} -E env CMAKE_PREFIX_PATH=${prefix} CMAK
                         bash -e -x commands.sh
                 WORKING_DIRECTORY ${project} OUTPUT_VARIABLE output ECHO_OUTPUT_VARIABLE COMMAND_ERROR_IS_FATAL ANY)
 
-# `text` holds what `pattern` matches, or all ends.
-function(expect text pattern)
-  if(NOT text MATCHES "${pattern}")
-    message(FATAL_ERROR "expected, but not found: ${pattern}\n${text}")
-  endif()
-endfunction()
 foreach(word IN ITEMS "\nrk4 " "\nheun " "\nlie_midpoint " "\nfree_body: " "\ndamped_body: " "48 cells: 24 ok, 24 refused"
                       "2 checks: 2 passed" "100% tests passed")
   expect("${output}" "${word}")
