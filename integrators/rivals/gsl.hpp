@@ -72,61 +72,27 @@ class GslSystem {
   gsl_odeiv2_system system_{evaluate, nullptr, size(), &field_};
 };
 
-/// Equal steps by gsl_odeiv2_step_apply. It is not asked for the slope at the end, so 13 evaluations make a step; the
-/// evolution's own fixed steps take 14.
+/// Steps by gsl_odeiv2_step_apply, for LibraryFixed. It is not asked for the slope at the end, so 13 evaluations make a
+/// step; the evolution's own fixed steps take 14.
 template <Problem P>
-class GslFixed {
-  using M = typename P::Space;
-
+class GslSteps {
  public:
-  GslFixed(gsl_odeiv2_step_type const* type, P const& problem, FixedStep control, NormPolicy policy)
-      : system_(new GslSystem<P>(problem)),
-        y_(system_->size()),
-        error_(system_->size()),
-        h_(control.h),
-        policy_(policy) {
+  GslSteps(P const& problem, gsl_odeiv2_step_type const* type)
+      : system_(new GslSystem<P>(problem)), y_(system_->size()), error_(system_->size()) {
     stepper_.reset(gsl_odeiv2_step_alloc(type, system_->size()));
     if (!stepper_) throw std::bad_alloc();
   }
-
-  Status advance(Point<M>& x, double t, double t_end) {
-    return run(x, [&] {
-      in_equal_steps(t, t_end, h_, [&](double from, double h, std::int64_t n) {
-        for (std::int64_t i = 0; i < n; ++i) step(from + double(i) * h, h);
-      });
-    });
-  }
-  /// One step to t_end, however long.
-  Status one_step(Point<M>& x, double t, double t_end) {
-    return run(x, [&] { step(t, t_end - t); });
-  }
-  void restart() { gsl_odeiv2_step_reset(stepper_.get()); }
-  Work work() const { return work_; }
-  Projections projections() const { return projections_; }
-
- private:
-  template <class F>
-  Status run(Point<M>& x, F take_steps) {
-    store(x, y_.data());
-    take_steps();
-    load(x, y_.data());
-    return all_finite(x) ? Status::ok : Status::diverged;
-  }
-  /// An explicit step fails only with its field, and ours returns no errors.
+  LibraryField<P> const& field() const { return system_->field(); }
+  double* numbers() { return y_.data(); }
   void step(double t, double h) {
     gsl_odeiv2_step_apply(stepper_.get(), t, h, y_.data(), error_.data(), nullptr, nullptr, system_->get());
-    ++work_.steps;
-    if (policy_ == NormPolicy::none) return;
-    system_->field().change(y_.data(), [&](Point<M>& x) { projections_.template apply<M>(x, policy_); });
   }
+  void restart() { gsl_odeiv2_step_reset(stepper_.get()); }
 
+ private:
   std::unique_ptr<GslSystem<P>> system_;
   GslOwned<gsl_odeiv2_step> stepper_;
   std::vector<double> y_, error_;
-  double h_;
-  NormPolicy policy_;
-  Work work_;
-  Projections projections_;
 };
 
 /// GSL's standard control at its defaults: errors below atol + rtol |y|, 10% more allowed, by component. GSL asks its
@@ -226,7 +192,7 @@ struct GslRk8pd {
   }
   template <LibraryProblem P>
   auto bind(P const& p, FixedStep control, NormPolicy policy) const {
-    return GslFixed<P>(gsl_odeiv2_step_rk8pd, p, control, policy);
+    return LibraryFixed<GslSteps<P>, P>(p, control, policy, gsl_odeiv2_step_rk8pd);
   }
 #endif
 };

@@ -1,5 +1,6 @@
 #pragma once
-/// A problem as libraries want it: plain numbers in, plain numbers out, the flat coordinates in storage order.
+/// A problem as libraries want it: plain numbers in, plain numbers out, the flat coordinates in storage order; and the
+/// driver of their equal steps.
 #include "integrators/integrator.hpp"
 
 namespace polhode {
@@ -72,6 +73,59 @@ class LibraryField {
 
   P const* problem_;
   mutable std::conditional_t<PowerSpace<M>, Room, NoMemory> room_;
+};
+
+/// Equal steps of a library's method.   Steps  made from the problem and `more`:
+///   field()    the problem as the library sees it
+///   numbers()  the state that it works on
+///   step(t, h) one step of it from t [s]; an explicit step fails only with its field, and ours returns no errors
+///   restart()  forgets what it keeps from step to step
+/// fails  Status::diverged if the state is no longer finite at t_end
+template <class Steps, LibraryProblem P>
+class LibraryFixed {
+  using X = Point<typename P::Space>;
+
+ public:
+  template <class... More>
+  LibraryFixed(P const& problem, FixedStep control, NormPolicy policy, More... more)
+      : steps_(problem, more...), h_(control.h), policy_(policy) {}
+
+  Status advance(X& x, double t, double t_end) {
+    return run(x, [&] {
+      in_equal_steps(t, t_end, h_, [&](double from, double h, std::int64_t n) {
+        for (std::int64_t i = 0; i < n; ++i) step(from + double(i) * h, h);
+      });
+    });
+  }
+  /// One step to t_end, however long.
+  Status one_step(X& x, double t, double t_end) {
+    return run(x, [&] { step(t, t_end - t); });
+  }
+  void restart() { steps_.restart(); }
+  Work work() const { return work_; }
+  Projections projections() const { return projections_; }
+
+ private:
+  template <class F>
+  Status run(X& x, F take_steps) {
+    store(x, steps_.numbers());
+    take_steps();
+    load(x, steps_.numbers());
+    return all_finite(x) ? Status::ok : Status::diverged;
+  }
+  void step(double t, double h) {
+    steps_.step(t, h);
+    ++work_.steps;
+    if (policy_ == NormPolicy::none) return;
+    steps_.field().change(steps_.numbers(), [&](X& x) { projections_.template apply<typename P::Space>(x, policy_); });
+    steps_.restart();  // a method that reuses its last slope must not: the state moved
+  }
+
+  Steps steps_;
+  double h_;
+  NormPolicy policy_;
+  Work work_;
+  Projections projections_;
 };
 
 }  // namespace polhode

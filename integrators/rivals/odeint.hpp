@@ -42,53 +42,21 @@ struct OdeintSystem {
   void operator()(State const& y, State& dydt, double t) const { field(t, y.data(), dydt.data()); }
 };
 
-/// Fixed steps of a one-step method of Odeint.
+/// Steps of a method of Odeint, for LibraryFixed.
 template <class OdeintStepper, Problem P>
-class OdeintFixed {
-  using M = typename P::Space;
-
+class OdeintSteps {
  public:
-  OdeintFixed(P const& problem, FixedStep control, NormPolicy policy)
-      : system_{LibraryField<P>(problem)}, y_(OdeintState<M>::of(problem.initial())), h_(control.h), policy_(policy) {}
-
-  Status advance(Point<M>& x, double t, double t_end) {
-    return run(x, [&] {
-      in_equal_steps(t, t_end, h_, [&](double from, double h, std::int64_t n) {
-        for (std::int64_t i = 0; i < n; ++i) step(from + double(i) * h, h);
-      });
-    });
-  }
-  /// One step to t_end, however long.
-  Status one_step(Point<M>& x, double t, double t_end) {
-    return run(x, [&] { step(t, t_end - t); });
-  }
+  explicit OdeintSteps(P const& problem)
+      : system_{LibraryField<P>(problem)}, y_(OdeintState<typename P::Space>::of(problem.initial())) {}
+  LibraryField<P> const& field() const { return system_.field; }
+  double* numbers() { return y_.data(); }
+  void step(double t, double h) { stepper_->do_step(system_, y_, t, h); }
   void restart() { stepper_.emplace(); }
-  Work work() const { return work_; }
-  Projections projections() const { return projections_; }
 
  private:
-  template <class F>
-  Status run(Point<M>& x, F take_steps) {
-    store(x, y_.data());
-    take_steps();
-    load(x, y_.data());
-    return all_finite(x) ? Status::ok : Status::diverged;
-  }
-  void step(double t, double h) {
-    stepper_->do_step(system_, y_, t, h);
-    ++work_.steps;
-    if (policy_ == NormPolicy::none) return;
-    system_.field.change(y_.data(), [&](Point<M>& x) { projections_.template apply<M>(x, policy_); });
-    stepper_.emplace();  // a method that reuses its last slope must not: the state moved
-  }
-
   OdeintSystem<P> system_;
   typename OdeintSystem<P>::State y_;
-  double h_;
-  NormPolicy policy_;
   std::optional<OdeintStepper> stepper_{std::in_place};  // made anew in place: Odeint never initialises its buffers
-  Work work_;
-  Projections projections_;
 };
 
 /// Odeint's own error control, stepped as its integrate_adaptive does. Controller is made from (atol, rtol).
@@ -188,7 +156,7 @@ template <template <class> class Stepper>
 struct RunsFixedSteps {
   template <LibraryProblem P>
   auto bind(P const& p, FixedStep control, NormPolicy policy) const {
-    return OdeintFixed<Stepper<P>, P>(p, control, policy);
+    return LibraryFixed<OdeintSteps<Stepper<P>, P>, P>(p, control, policy);
   }
 };
 /// The same, and under Odeint's error control.
