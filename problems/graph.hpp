@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
+#include <initializer_list>
+#include <numeric>
 #include <optional>
 #include <random>
 #include <sstream>
@@ -56,25 +58,22 @@ inline std::string fault(double i, double j, double weight) {
   return "";
 }
 
-/// Nodes that node 0 reaches along next(i, visit).
-template <class Next>
-std::vector<bool> reached(int nodes, Next const& next) {
-  std::vector<bool> seen(std::size_t(nodes), false);
+/// The first node that node 0 does not reach along the links of these graphs, all on the same nodes; nothing if it
+/// reaches every one.
+inline std::optional<int> out_of_reach(std::initializer_list<Graph const*> graphs) {
+  std::vector<bool> seen(std::size_t((*graphs.begin())->nodes()), false);
   std::vector<int> open;
   auto const visit = [&](int i) {
     if (seen[std::size_t(i)]) return;
     seen[std::size_t(i)] = true;
     open.push_back(i);
   };
-  if (nodes > 0) visit(0);
+  if (!seen.empty()) visit(0);
   while (!open.empty()) {
     int const i = open.back();
     open.pop_back();
-    next(i, visit);
+    for (Graph const* graph : graphs) graph->each_heard(i, [&](int j, double) { visit(j); });
   }
-  return seen;
-}
-inline std::optional<int> first_missing(std::vector<bool> const& seen) {
   auto const found = std::find(seen.begin(), seen.end(), false);
   if (found == seen.end()) return {};
   return int(found - seen.begin());
@@ -84,27 +83,36 @@ inline std::optional<int> first_missing(std::vector<bool> const& seen) {
 
 // ---- Making graphs --------------------------------------------------------------------------------------------------
 
+/// The graph of the links for which each_link(link) calls link(i, j, a_ij), nodes from 0; it is called twice.
+template <class EachLink>
+Graph compressed(int nodes, EachLink const& each_link) {
+  Graph graph;
+  graph.first.assign(std::size_t(nodes) + 1, 0);
+  each_link([&](int i, int, double) { ++graph.first[std::size_t(i) + 1]; });
+  std::partial_sum(graph.first.begin(), graph.first.end(), graph.first.begin());
+  graph.heard.resize(std::size_t(graph.first.back()));
+  graph.weight.resize(graph.heard.size());
+  std::vector<std::int32_t> next = graph.first;
+  each_link([&](int i, int j, double weight) {
+    auto const at = std::size_t(next[std::size_t(i)]++);
+    graph.heard[at] = std::int32_t(j);
+    graph.weight[at] = weight;
+  });
+  return graph;
+}
 /// The graph of `nodes` nodes with these links. Throws ParameterError.
 inline Graph graph_of(std::vector<double> const& triples, int nodes) {
   using namespace graph_rules;
   if (triples.size() % 3 != 0) refuse("takes 3 numbers a link (node, node that it hears, weight)");
-  Graph graph;
-  graph.first.assign(std::size_t(nodes) + 1, 0);
   for (std::size_t k = 0; k < triples.size(); k += 3) {
     if (std::string const why = fault(triples[k], triples[k + 1], triples[k + 2]); !why.empty()) refuse(why);
     for (double end : {triples[k], triples[k + 1]})
       if (end > nodes) refuse("node " + text(end) + " does not exist: there are " + std::to_string(nodes));
-    ++graph.first[std::size_t(triples[k])];
   }
-  for (std::size_t i = 0; i < std::size_t(nodes); ++i) graph.first[i + 1] += graph.first[i];
-  graph.heard.resize(triples.size() / 3);
-  graph.weight.resize(triples.size() / 3);
-  std::vector<std::int32_t> next = graph.first;
-  for (std::size_t k = 0; k < triples.size(); k += 3) {
-    auto const at = std::size_t(next[std::size_t(triples[k]) - 1]++);
-    graph.heard[at] = std::int32_t(triples[k + 1]) - 1;
-    graph.weight[at] = triples[k + 2];
-  }
+  Graph const graph = compressed(nodes, [&](auto const& link) {
+    for (std::size_t k = 0; k < triples.size(); k += 3)
+      link(int(triples[k]) - 1, int(triples[k + 1]) - 1, triples[k + 2]);
+  });
   std::vector<int> hearer(std::size_t(nodes), -1);  // the last node found to hear this one
   for (int i = 0; i < nodes; ++i)
     graph.each_heard(i, [&](int j, double) {
@@ -148,6 +156,13 @@ inline std::vector<double> read_graph(std::istream& in, std::string const& file)
   return triples;
 }
 
+/// Every link turned around: whom i hears there hears i here.
+inline Graph reversed(Graph const& graph) {
+  return compressed(graph.nodes(), [&](auto const& link) {
+    for (int i = 0; i < graph.nodes(); ++i) graph.each_heard(i, [&](int j, double weight) { link(j, i, weight); });
+  });
+}
+
 /// A ring, in which each node hears the one before (so the graph is strongly connected), and for each node one more
 /// that it hears, at random; weights 1. Equal on every machine, as the distributions of the standard library are
 /// not. Two nodes: the ring alone.
@@ -180,26 +195,12 @@ inline void require_positive_weights(Graph const& graph) {
 /// Node 0 hears everyone and everyone hears node 0, through others if need be. If not: who fails, in words.
 inline std::string strong_connection_fault(Graph const& graph) {
   using namespace graph_rules;
-  int const n = graph.nodes();
-  auto const missing = [&](auto const& next) { return first_missing(reached(n, next)); };
-  auto const heard = [&](int i, auto const& visit) { graph.each_heard(i, [&](int j, double) { visit(j); }); };
-  if (auto const i = missing(heard)) return node(0) + " does not hear " + node(*i) + ", not even through others";
-
-  std::vector<std::int32_t> first(std::size_t(n) + 1, 0), hearers(graph.heard.size());
-  for (std::int32_t j : graph.heard) ++first[std::size_t(j) + 1];
-  for (std::size_t j = 0; j < std::size_t(n); ++j) first[j + 1] += first[j];
-  std::vector<std::int32_t> next = first;
-  for (int i = 0; i < n; ++i)
-    graph.each_heard(i, [&](int j, double) { hearers[std::size_t(next[std::size_t(j)]++)] = i; });
-  auto const backwards = [&](int j, auto const& visit) {
-    for (auto k = std::size_t(first[std::size_t(j)]); k < std::size_t(first[std::size_t(j) + 1]); ++k)
-      visit(hearers[k]);
-  };
-  if (auto const i = missing(backwards)) return node(*i) + " does not hear " + node(0) + ", not even through others";
+  Graph const hearers = reversed(graph);
+  if (auto const i = out_of_reach({&graph}))
+    return node(0) + " does not hear " + node(*i) + ", not even through others";
+  if (auto const i = out_of_reach({&hearers}))
+    return node(*i) + " does not hear " + node(0) + ", not even through others";
   return "";
-}
-inline bool strongly_connected(Graph const& graph) {
-  return strong_connection_fault(graph).empty();
 }
 inline void require_strongly_connected(Graph const& graph) {
   std::string const why = strong_connection_fault(graph);
@@ -208,18 +209,8 @@ inline void require_strongly_connected(Graph const& graph) {
 
 /// A node without a path to node 0, whichever way links point; nothing if there is none.
 inline std::optional<int> node_apart(Graph const& graph) {
-  std::vector<std::vector<int>> near(std::size_t(graph.nodes()));
-  for (int i = 0; i < graph.nodes(); ++i)
-    graph.each_heard(i, [&](int j, double) {
-      near[std::size_t(i)].push_back(j);
-      near[std::size_t(j)].push_back(i);
-    });
-  return graph_rules::first_missing(graph_rules::reached(graph.nodes(), [&](int i, auto const& visit) {
-    for (int j : near[std::size_t(i)]) visit(j);
-  }));
-}
-inline bool connected(Graph const& graph) {
-  return !node_apart(graph);
+  Graph const hearers = reversed(graph);
+  return graph_rules::out_of_reach({&graph, &hearers});
 }
 inline void require_connected(Graph const& graph) {
   using namespace graph_rules;

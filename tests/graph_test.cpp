@@ -145,13 +145,13 @@ TEST(GraphRules, StrongConnection) {
             "parameter graph: must be strongly connected: node 2 does not hear node 1, not even through others");
   EXPECT_EQ(fault({1, 2, 1, 2, 1, 1, 3, 1, 1}, 3),
             "parameter graph: must be strongly connected: node 1 does not hear node 3, not even through others");
-  EXPECT_FALSE(strongly_connected(graph_of({1, 2, 1}, 2)));
-  EXPECT_TRUE(strongly_connected(graph_of({1, 2, 1, 2, 1, 1}, 2)));
+  EXPECT_NE(strong_connection_fault(graph_of({1, 2, 1}, 2)), "");
+  EXPECT_EQ(strong_connection_fault(graph_of({1, 2, 1, 2, 1, 1}, 2)), "");
 }
 
 TEST(GraphRules, ConnectionIgnoresDirections) {
-  EXPECT_TRUE(connected(graph_of({1, 2, 1, 3, 2, 1}, 3)));
-  EXPECT_FALSE(connected(graph_of({1, 2, 1, 3, 4, 1}, 4)));
+  EXPECT_FALSE(node_apart(graph_of({1, 2, 1, 3, 2, 1}, 3)));
+  EXPECT_EQ(node_apart(graph_of({1, 2, 1, 3, 4, 1}, 4)), 2);
   EXPECT_EQ(complaint([] {
               require_connected(graph_of({1, 2, 1, 3, 4, 1}, 4));
             }),
@@ -217,7 +217,7 @@ TEST(RandomDigraph, AlwaysHoldsTheRulesOfAGraph) {
   for (int nodes : {2, 3, 4, 5, 17, 300})
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
       Graph const graph = random_digraph(nodes, seed);
-      EXPECT_TRUE(strongly_connected(graph)) << nodes << " nodes, seed " << seed;
+      EXPECT_EQ(strong_connection_fault(graph), "") << nodes << " nodes, seed " << seed;
       std::vector<double> triples;
       for (int i = 0; i < nodes; ++i)
         graph.each_heard(i, [&](int j, double w) { triples.insert(triples.end(), {i + 1., j + 1., w}); });
@@ -231,7 +231,7 @@ TEST(RandomDigraph, IsLinearInItsNodes) {
   Graph const graph = random_digraph(nodes, 1);
   EXPECT_EQ(graph.first.size(), std::size_t(nodes) + 1);
   EXPECT_LE(graph.heard.capacity() + graph.weight.capacity(), 4 * std::size_t(nodes));
-  EXPECT_TRUE(strongly_connected(graph));
+  EXPECT_EQ(strong_connection_fault(graph), "");
 }
 
 // ---- The laws, link by link -----------------------------------------------------------------------------------------

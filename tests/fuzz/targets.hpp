@@ -76,8 +76,8 @@ inline void graph(std::string const& bytes) {
   std::istringstream in(bytes);
   try {
     Graph const read = graph_of(read_graph(in, "f.txt"), 20);
-    static_cast<void>(strongly_connected(read));
-    static_cast<void>(connected(read));
+    static_cast<void>(strong_connection_fault(read));
+    static_cast<void>(node_apart(read));
   } catch (ParameterError const&) {
   }
 }
