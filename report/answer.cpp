@@ -70,6 +70,19 @@ std::vector<std::string> reasons(Facts const& facts, std::map<std::string, Keepi
   return words;
 }
 
+/// Who of those that keep the norm does not claim it, if the catalogue knows all of them.
+std::string by_accuracy_alone(Facts const& facts, std::vector<std::string> const& keepers) {
+  std::vector<std::string> accurate;
+  for (std::string const& name : keepers) {
+    auto const known = facts.contents.catalogue.find(name);
+    if (known == facts.contents.catalogue.end()) return "";
+    auto const& claims = known->second.preserves;
+    if (std::ranges::find(claims, "norm") == claims.end()) accurate.push_back(name);
+  }
+  if (accurate.empty()) return "";
+  return fmt::format(" ({} by accuracy, not by construction)", shortened(accurate, 5));
+}
+
 std::string norm_sentence(Facts const& facts, std::map<std::string, Keeping> const& methods) {
   if (methods.empty()) {
     return "Which integrator keeps the norm cannot be said: the records hold no successful run in quaternions, without "
@@ -86,6 +99,7 @@ std::string norm_sentence(Facts const& facts, std::map<std::string, Keeping> con
   if (!keepers.empty()) {
     text = fmt::format("Without projection {} {} |q.q - 1| within {}", shortened(keepers, 5),
                        keepers.size() == 1 ? "keeps" : "keep", significant(largest, 2));
+    text += by_accuracy_alone(facts, keepers);
   }
   auto const groups = keeping_of(facts, false);
   bool const all = std::ranges::all_of(groups, [](auto const& item) { return item.second.worst < kept; });
@@ -96,7 +110,7 @@ std::string norm_sentence(Facts const& facts, std::map<std::string, Keeping> con
                       significant(worst->second.worst, 2));
   auto const why = reasons(facts, methods);
   if (why.empty()) return text + ".";
-  return text + fmt::format(": the paper's visible violation means {}.", listed(why, "or"));
+  return text + fmt::format(": the visible violation of Xu et al. (2017) means {}.", listed(why, "or"));
 }
 
 /// The same run without and with projection.
@@ -180,8 +194,9 @@ std::string accuracy_sentence(Facts const& facts, std::map<std::string, Keeping>
       if (!shown || merit(*run) > merit(*shown)) shown = run;
     }
     if (!shown) continue;
-    return fmt::format("At h = {} s {} points within {}{}; {}.", significant(*h), shown->of.integrator,
-                       angle(*shown->attitude_error_max), below_bar(*shown) ? ", below the reference's bar" : "",
+    return fmt::format("On {}, at h = {} s {} points within {}{}; {}.", instance->label, significant(*h),
+                       shown->of.integrator, angle(*shown->attitude_error_max),
+                       below_bar(*shown) ? ", below the reference's bar" : "",
                        projection_clause(pairs_of(*instance), h));
   }
   return "How accurate it is cannot be said: no such run was compared with a reference.";

@@ -6,20 +6,17 @@
 
 #include "report/sections.hpp"
 #include "report/text.hpp"
+#include "results/meta.hpp"
 
 namespace polhode::report {
+namespace {
 
 using results::Record;
 
-namespace {
-
-/// The values that the files give to a name, each once: "AMD EPYC" or "A and B"; empty if none does.
+/// What the files say of a name, each text once: "AMD EPYC" or "A and B"; empty if none says anything.
 std::string meta_of(Facts const& facts, std::string const& name) {
-  std::set<std::string> values;
-  for (results::Meta const& meta : facts.contents.metas) {
-    if (auto const found = meta.find(name); found != meta.end() && !found->second.empty()) values.insert(found->second);
-  }
-  return listed({values.begin(), values.end()});
+  auto const texts = results::entries_of(facts.contents.metas, name);
+  return listed({texts.begin(), texts.end()});
 }
 
 /// Status, reason, name of the problem; its label and the method, which refusals for one reason share a row without.
@@ -29,6 +26,20 @@ struct Failures {
   std::set<std::string> problems, methods;
   std::vector<std::string> controls;  ///< of every run
 };
+
+/// Runs that ended well, with something to be known about them: warnings, missing references.
+void add_remarks(Document& document, Facts const& facts) {
+  std::map<std::pair<std::string, std::string>, std::size_t> remarks;
+  for (Instance const& instance : facts.instances)
+    for (Record const* run : instance.runs)
+      if (is_ok(*run) && !run->reason.empty()) ++remarks[{instance.label, run->reason}];
+  if (remarks.empty()) return;
+  Table table{.name = "remarks",
+              .caption = "Runs that ended well, and what should be known about them.",
+              .columns = {{"problem"}, {"remark"}, {"runs", true}}};
+  for (auto const& [key, n] : remarks) table.rows.push_back({key.first, key.second, std::to_string(n)});
+  document.add(std::move(table));
+}
 
 }  // namespace
 
@@ -50,20 +61,6 @@ std::string timing_note(Facts const& facts) {
   int const low = *repetitions.begin(), high = *repetitions.rbegin();
   return fmt::format("CPU times: medians of {} interleaved repetitions, their 95% intervals in the CSV file; on {}.",
                      low == high ? std::to_string(low) : fmt::format("{} to {}", low, high), machine);
-}
-
-/// Runs that ended well, with something to be known about them: warnings, missing references.
-void add_remarks(Document& document, Facts const& facts) {
-  std::map<std::pair<std::string, std::string>, std::size_t> remarks;
-  for (Instance const& instance : facts.instances)
-    for (Record const* run : instance.runs)
-      if (is_ok(*run) && !run->reason.empty()) ++remarks[{instance.label, run->reason}];
-  if (remarks.empty()) return;
-  Table table{.name = "remarks",
-              .caption = "Runs that ended well, and what should be known about them.",
-              .columns = {{"problem"}, {"remark"}, {"runs", true}}};
-  for (auto const& [key, n] : remarks) table.rows.push_back({key.first, key.second, std::to_string(n)});
-  document.add(std::move(table));
 }
 
 void add_failures(Document& document, Facts const& facts) {

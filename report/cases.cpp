@@ -34,10 +34,6 @@ bool is_better(Facts const& facts, Record const& a, Record const& b) {
   return merit(a) < merit(b);
 }
 
-}  // namespace
-
-namespace {
-
 /// A short name for each entry: what the words say, or the whole label where they say too little.
 void name_all(std::vector<CaseRuns>& list) {
   for (CaseRuns& a : list) {
@@ -117,6 +113,13 @@ double parameter(Cell const& cell, std::string const& name, double otherwise) {
 std::optional<double> claimed(Record const& run, std::string_view name) {
   auto const claim = run.claims.find(std::string(name));
   return claim == run.claims.end() ? std::nullopt : finite(claim->second.value);
+}
+
+std::optional<double> last_of(Facts const& facts, Record const& run, std::string_view column) {
+  results::Series const* series = facts.series_of(run, "history");
+  auto const at = series ? column_of(*series, column) : std::nullopt;
+  if (!at || series->rows.empty() || series->rows.back().size() <= *at) return {};
+  return finite(series->rows.back()[*at]);
 }
 
 Curve against_time(Facts const& facts, Record const& run, std::string_view column, std::string label,

@@ -38,6 +38,9 @@ double parameter(results::Cell const& cell, std::string const& name, double othe
 /// The value of a run's claim, if it has one that is finite.
 std::optional<double> claimed(results::Record const& run, std::string_view name);
 
+/// The last value of a column of a run's history, if it is finite.
+std::optional<double> last_of(Facts const& facts, results::Record const& run, std::string_view column);
+
 /// More samples than this per curve only make the file larger.
 inline constexpr std::size_t most_samples = 1200;
 

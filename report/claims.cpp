@@ -14,12 +14,8 @@ using results::Record;
 
 /// Thruster effort of a run: its claim, else the end of its history.
 std::optional<double> energy_of(Facts const& facts, Record const& run) {
-  auto const claim = run.claims.find("energy_c");
-  if (claim != run.claims.end() && finite(claim->second.value)) return claim->second.value;
-  results::Series const* series = facts.series_of(run, "history");
-  auto const column = series ? column_of(*series, "energy_c") : std::nullopt;
-  if (!column || series->rows.empty() || series->rows.back().size() <= *column) return {};
-  return finite(series->rows.back()[*column]);
+  auto const claim = claimed(run, "energy_c");
+  return claim ? claim : last_of(facts, run, "energy_c");
 }
 
 /// What the records say about one gain set and sign as a whole.

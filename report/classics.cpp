@@ -107,15 +107,8 @@ std::string short_name(Cell const& c) {
   return c.variant.empty() ? c.problem : fmt::format("{} {}", c.problem, c.variant);
 }
 
-/// The first of a ranking that is ours, or a rival's.
-Cost const* first(std::vector<Cost> const& ranking, bool rival) {
-  auto const found =
-      std::ranges::find_if(ranking, [&](Cost const& cost) { return is_rival(cost.run->of.integrator) == rival; });
-  return found == ranking.end() ? nullptr : &*found;
-}
-
 /// At the target, or at most that where nothing brackets it.
-Entry cost_of(Cost const& cost, Measure measure) {
+Entry cost_entry(Cost const& cost, Measure measure) {
   std::string const value = measure == Measure::time ? duration(cost.value) : significant(cost.value, 4);
   return {cost.interpolated ? value : "≤ " + value, exact(cost.value)};
 }
@@ -142,12 +135,12 @@ void add_methods(Document& document, Facts const& facts) {
     for (double const target : {1e-6, 1e-9}) {
       auto const costs = ranking(instance, target, measure);
       if (costs.empty()) continue;
-      Cost const *own = first(costs, false), *rival = first(costs, true);
+      Cost const *own = first_of(costs, false), *rival = first_of(costs, true);
       std::vector<Entry> row{short_name(instance.like()), number(target)};
       for (Cost const* cost : {own, rival}) {
         row.emplace_back(cost ? method_of(cost->run->of) : absent);
         row.emplace_back(cost ? control_of(cost->run->of) : absent);
-        row.push_back(cost ? cost_of(*cost, measure) : Entry(absent));
+        row.push_back(cost ? cost_entry(*cost, measure) : Entry(absent));
       }
       row.push_back(own && rival ? number(rival->value / own->value) : Entry(absent));
       table.rows.push_back(std::move(row));

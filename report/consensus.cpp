@@ -139,8 +139,8 @@ void add_escape(Document& document, Facts const& facts) {
   for (Record const* run : facts.runs) {
     if (run->of.problem != "group_consensus" || !has_word(run->of.variant, "theorem2")) continue;
     table.rows.push_back({run->of.formulation, run->of.integrator, control_of(run->of),
-                          std::string(name_of(run->status)), run->steps ? Entry(std::to_string(*run->steps)) : absent,
-                          verdict_of(run, "escape"), is_ok(*run) ? "" : run->reason});
+                          std::string(name_of(run->status)), count(run->steps), verdict_of(run, "escape"),
+                          is_ok(*run) ? "" : run->reason});
     (is_ok(*run) ? went_on : ended).insert(run->of.formulation);
     if (auto const escape = claimed(*run, "escape")) at = escape;
   }

@@ -13,9 +13,6 @@ namespace {
 using results::Record;
 using results::Series;
 
-/// Exact zeros have no place on a logarithmic axis: they are drawn here.
-constexpr double floor_of_figure = 1e-17;
-
 /// Changes of the invariants of one run against time.
 struct History {
   Record const* run = nullptr;
@@ -68,11 +65,11 @@ std::vector<History> histories_of(Facts const& facts) {
 using Values = std::vector<double> History::*;
 
 Panel panel_of(Facts const& facts, std::vector<History> const& histories, Values values, std::string label) {
-  Panel panel{.x = {"t [s]"}, .y = {std::move(label), true, floor_of_figure}};
+  Panel panel{.x = {"t [s]"}, .y = {std::move(label), true, drawn_zero}};
   for (History const& history : histories) {
     Curve curve{method_of(history.run->of), facts.style_of(history.run->of)};
     for (std::size_t i = 0; i < history.t.size(); ++i) {
-      curve.points.push_back({history.t[i], std::max((history.*values)[i], floor_of_figure)});
+      curve.points.push_back({history.t[i], std::max((history.*values)[i], drawn_zero)});
     }
     curve.style.every = std::max(1, static_cast<int>(curve.points.size()) / 10);
     panel.curves.push_back(std::move(curve));

@@ -15,9 +15,6 @@ namespace {
 using results::Cell;
 using results::Record;
 
-/// A defect that stays below this part of its scale is round-off.
-constexpr double round_off = 1e-12;
-
 /// Methods that see the constraint; all others run the form of index 1.
 bool sees_constraint(std::string_view integrator) {
   return integrator.starts_with("half_explicit") || integrator == "rattle" || integrator == "generalized_alpha" ||
@@ -123,17 +120,10 @@ void say_level(Document& document, std::vector<Sweep> const& sweeps, ErrorKind c
   std::vector<Sweep> held, off;
   double worst = 0;
   for (Sweep const& sweep : sweeps) {
-    double most = 0;
-    bool any = false;
-    for (Record const* run : sweep.runs) {
-      auto const defect = finite(kind.of(*run));
-      if (!is_ok(*run) || !defect) continue;
-      any = true;
-      most = std::max(most, *defect);
-    }
-    if (!any) continue;
-    bool const is_held = most <= round_off * kind.scale;
-    if (is_held) worst = std::max(worst, most);
+    auto const most = largest(sweep, kind);
+    if (!most) continue;
+    bool const is_held = *most <= round_off * kind.scale;
+    if (is_held) worst = std::max(worst, *most);
     (is_held ? held : off).push_back(sweep);
   }
   if (held.empty() && off.empty()) return;
@@ -189,7 +179,7 @@ Table defect_table(std::vector<Sweep> const& sweeps) {
                              c.formulation,
                              c.h ? control_of(c) : fmt::format("rtol = {}", significant(c.rtol.value_or(NAN))),
                              std::string(name_of(run->status)),
-                             run->evaluations ? Entry(std::to_string(*run->evaluations)) : Entry(absent)};
+                             count(run->evaluations)};
       for (ErrorKind const& kind : kinds) row.push_back(is_ok(*run) ? number(kind.of(*run), 2) : Entry(absent));
       table.rows.push_back(std::move(row));
     }
@@ -227,8 +217,8 @@ void add_order_table(Document& document, Facts const& facts) {
 /// Defects and errors against the evaluations: fixed steps and tolerances in one picture.
 Panel work_panel(Facts const& facts, std::vector<Sweep> const& sweeps, ErrorKind const& kind) {
   Panel panel{.x = {"evaluations", true},
-              .y = {std::string(kind.label), true, 1e-16 * kind.scale},
-              .rounding = 1e-13 * kind.scale};
+              .y = {std::string(kind.label), true, least_error * kind.scale},
+              .rounding = rounding_rules * kind.scale};
   for (Sweep const& sweep : sweeps) {
     Cell const& c = sweep.like();
     Curve curve{c.integrator + (c.h ? "" : ", adaptive"), facts.style_of(c)};

@@ -24,7 +24,7 @@ using Row = std::vector<double>;
 /// The histories of one gain set and sign, as pictures.
 class Histories {
  public:
-  Histories(Facts const& facts, CaseRuns const& cases, std::size_t n) : n_(n) {
+  Histories(Facts const& facts, CaseRuns const& cases, std::size_t n) : facts_(facts), n_(n) {
     int index = 0;
     for (auto const name : tether_capture().cases) {
       Record const* run = cases.find(name);
@@ -49,15 +49,10 @@ class Histories {
   }
 
   /// A column against time, scaled to the unit of the label.
-  Panel against_time(std::string_view column, std::string label, double factor) const {
+  Panel history_of(std::string_view column, std::string label, double factor) const {
     Panel panel{.x = {"t [s]"}, .y = {std::move(label)}};
     for (Shown const& s : shown_) {
-      auto const t = column_of(*s.series, "t"), value = column_of(*s.series, column);
-      if (!t || !value) continue;
-      Curve curve = curve_of(
-          s.label, style_of(s), *s.series, [&](Row const& row) { return row[*t]; },
-          [&](Row const& row) { return factor * row[*value]; });
-      if (!curve.points.empty()) panel.curves.push_back(std::move(curve));
+      add_curve(panel, against_time(facts_, *s.run, column, s.label, style_of(s), {.factor = factor}));
     }
     return panel;
   }
@@ -80,14 +75,13 @@ class Histories {
         return
             [&s, q, axis](Row const& row) { return capture_point(row[q[0]], row[q[1]], row[q[2]], row[q[3]])[axis]; };
       };
-      Curve curve = curve_of(s.label, style_of(s), *s.series, coordinate(across), coordinate(up));
-      if (!curve.points.empty()) panel.curves.push_back(std::move(curve));
+      add_curve(panel, curve_of(s.label, style_of(s), *s.series, coordinate(across), coordinate(up)));
     }
     if (panel.curves.empty()) return panel;
     std::array<double, 3> const target{-arm, 0, 0};
     Point const start = panel.curves.front().points.front();
     panel.curves.push_back({"start", {.index = 4, .line = false}, {start}});
-    panel.curves.push_back({"target", {.index = 10, .open = true, .line = false}, {{target[across], target[up]}}});
+    panel.curves.push_back({"target", {.index = 10, .line = false}, {{target[across], target[up]}}});
     return panel;
   }
 
@@ -127,6 +121,7 @@ class Histories {
     return {scale * (x * x - y * y - z * z + w * w), scale * 2 * (x * y + z * w), scale * 2 * (x * z - y * w)};
   }
 
+  Facts const& facts_;
   std::size_t n_;
   std::vector<Shown> shown_;
 };
@@ -150,14 +145,14 @@ void add_control_cases(Document& document, Facts const& facts) {
                   "Track of the capture point C in orbital axes, seen along z, y and x (the paper's figure 4).",
                   {histories.track(0, 1), histories.track(0, 2), histories.track(1, 2)}, 2);
     histories.add(document, "angle", "Angle alpha between arm and tether (figure 5).",
-                  {histories.against_time("alpha", "alpha [deg]", degree)}, 1);
-    histories.add(document, "rates", "Body rates (figure 6).",
-                  {histories.against_time("wx", "omega x [deg/s]", degree),
-                   histories.against_time("wy", "omega y [deg/s]", degree),
-                   histories.against_time("wz", "omega z [deg/s]", degree)},
-                  1);
+                  {histories.history_of("alpha", "alpha [deg]", degree)}, 1);
+    histories.add(
+        document, "rates", "Body rates (figure 6).",
+        {histories.history_of("wx", "omega x [deg/s]", degree), histories.history_of("wy", "omega y [deg/s]", degree),
+         histories.history_of("wz", "omega z [deg/s]", degree)},
+        1);
     histories.add(document, "energy", "Thruster effort E_c, the integral of M_u.M_u (figure 7).",
-                  {histories.against_time("energy_c", "E_c [N^2 m^2 s]", 1)}, 1);
+                  {histories.history_of("energy_c", "E_c [N^2 m^2 s]", 1)}, 1);
   }
   if (n == 0)
     document.say("The records hold no history of tether_capture's case1, case2 or case3, so there are no figures.");

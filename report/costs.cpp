@@ -8,43 +8,39 @@
 namespace polhode::report {
 namespace {
 
-using results::Record;
-
 Entry cost_entry(Cost const& cost, Measure measure) {
-  Entry entry = measure == Measure::time ? cpu_time(results::CpuTime{cost.value, cost.low, cost.high})
-                                         : Entry(significant(cost.value, 4) + " evaluations", exact(cost.value));
+  Entry entry =
+      measure == Measure::time ? cpu_time(cost) : Entry(significant(cost.value, 4) + " evaluations", exact(cost.value));
   if (cost.interpolated) entry.text = "≈ " + entry.text;
   return entry;
 }
 
-/// Who reaches one accuracy on one problem at the least cost.
+/// Who reaches one accuracy on one problem at the least cost, if anybody does.
 struct Verdict {
-  std::vector<Cost> costs;
-  Cost const* best = nullptr;
-  Cost const* opponent = nullptr;  ///< the best of the other camp: rivals if an own method wins, and vice versa
+  std::optional<Cost> best;
+  std::optional<Cost> opponent;  ///< the best of the other camp: rivals if an own method wins, and vice versa
 
-  explicit Verdict(std::vector<Cost> ranked) : costs(std::move(ranked)) {
-    if (costs.empty()) return;
-    best = &costs.front();
-    auto const other = std::ranges::find_if(costs, [&](Cost const& c) { return rival(c) != rival(*best); });
-    if (other != costs.end()) opponent = &*other;
-  }
-  Verdict(Verdict const&) = delete;
-  Verdict& operator=(Verdict const&) = delete;
-
-  static bool rival(Cost const& cost) { return is_rival(cost.run->of.integrator); }
+  bool rival_wins() const { return best && is_rival(best->run->of.integrator); }
   bool tied() const { return opponent && opponent->low <= best->high; }
 };
+
+Verdict verdict_on(std::vector<Cost> const& ranked) {
+  Verdict v;
+  if (ranked.empty()) return v;
+  v.best = ranked.front();
+  if (Cost const* other = first_of(ranked, !v.rival_wins())) v.opponent = *other;
+  return v;
+}
 
 /// The two targets of one problem [rad].
 constexpr double coarse_target = 1e-6, fine_target = 1e-9;
 
 /// "1.83 and 4.65 µs", "0.9 ms", "200 and 500 evaluations".
-std::string both_costs(std::vector<Verdict const*> const& verdicts, Measure measure) {
+std::string both_costs(std::vector<Verdict> const& verdicts, Measure measure) {
   std::vector<std::string> texts;
-  for (Verdict const* v : verdicts) {
-    texts.push_back(measure == Measure::time ? duration(v->best->value, 2)
-                                             : significant(v->best->value, 3) + " evaluations");
+  for (Verdict const& v : verdicts) {
+    texts.push_back(measure == Measure::time ? duration(v.best->value, 2)
+                                             : significant(v.best->value, 3) + " evaluations");
   }
   // a unit that both have is said once
   if (texts.size() == 2) {
@@ -55,15 +51,14 @@ std::string both_costs(std::vector<Verdict const*> const& verdicts, Measure meas
 }
 
 /// Who wins on one problem, and by how much: "(cf4, dopri5; best rival 1.3 and 1.07 times that)".
-std::string both_winners(std::vector<Verdict const*> const& verdicts, bool in_full) {
+std::string both_winners(std::vector<Verdict> const& verdicts, bool in_full) {
   std::vector<std::string> names, factors;
   std::size_t rivals = 0;
-  for (Verdict const* v : verdicts) {
-    std::string const name = v->best->run->of.integrator;
-    rivals += Verdict::rival(*v->best) ? 1U : 0U;
+  for (Verdict const& v : verdicts) {
+    std::string const name = v.best->run->of.integrator;
+    rivals += v.rival_wins() ? 1U : 0U;
     if (std::ranges::find(names, name) == names.end()) names.push_back(name);
-    if (v->opponent) factors.push_back(significant(v->opponent->value / v->best->value));
-    if (v->opponent && v->tied()) factors.back() += " (a tie)";
+    if (v.opponent) factors.push_back(significant(v.opponent->value / v.best->value) + (v.tied() ? " (a tie)" : ""));
   }
   bool const mixed = rivals > 0 && rivals < verdicts.size();
   std::string const who = rivals == 0 ? "" : mixed ? "rivals included: " : names.size() > 1 ? "rivals " : "rival ";
@@ -82,16 +77,17 @@ std::string cost_sentence(Facts const& facts) {
     Instance const* instance = facts.headline(headline);
     if (!instance) continue;
     Measure const measure = measure_of(*instance);
-    Verdict const coarse(ranking(*instance, coarse_target, measure)), fine(ranking(*instance, fine_target, measure));
-    std::vector<Verdict const*> reached;
-    for (Verdict const* v : {&coarse, &fine}) {
-      if (v->best) reached.push_back(v);
+    Verdict const coarse = verdict_on(ranking(*instance, coarse_target, measure));
+    Verdict const fine = verdict_on(ranking(*instance, fine_target, measure));
+    std::vector<Verdict> reached;
+    for (Verdict const& v : {coarse, fine}) {
+      if (v.best) reached.push_back(v);
     }
     if (reached.empty()) continue;
     timed = timed && measure == Measure::time;
-    std::string text = fmt::format("{} takes {} {}", headline.words, both_costs(reached, measure),
-                                   both_winners(reached, parts.empty()));
-    if (!parts.empty()) text.replace(headline.words.size(), 6, "");
+    bool const is_first = parts.empty();
+    std::string text = fmt::format("{}{} {} {}", headline.words, is_first ? " takes" : "", both_costs(reached, measure),
+                                   both_winners(reached, is_first));
     if (!coarse.best) text += " to 1e-9 alone";
     if (!fine.best) text += ", nothing reaching 1e-9";
     parts.push_back(std::move(text));
@@ -127,9 +123,9 @@ void add_winners(Document& document, Facts const& facts) {
     if (!instance.comparable() || is_aside(instance.like())) continue;
     Measure const measure = measure_of(instance);
     for (double const target : {coarse_target, fine_target}) {
-      Verdict const v(ranking(instance, target, measure));
+      Verdict const v = verdict_on(ranking(instance, target, measure));
       std::vector<Entry> row{instance.label, number(target), number(arcseconds(target))};
-      for (Cost const* cost : {v.best, v.opponent}) {
+      for (auto const& cost : {v.best, v.opponent}) {
         row.push_back(cost ? Entry(method_of(cost->run->of)) : Entry("nobody"));
         row.push_back(cost ? cost_entry(*cost, measure) : Entry(absent));
         row.push_back(cost ? number(cost->low) : Entry(absent));

@@ -207,7 +207,6 @@ void add_step_control(Document& document, Facts const& facts) {
                           {"rejected", true},
                           {"evaluations", true},
                           {"steps, printed over smooth", true}}};
-  auto const count = [](std::optional<std::int64_t> n) { return n ? Entry(std::to_string(*n)) : Entry(absent); };
   std::size_t ended = 0;
   double least = INFINITY, most = 0;
   std::vector<std::string> reasons;
@@ -247,25 +246,20 @@ void add_kinks(Document& document, Facts const& facts) {
   auto const sweeps = twins(facts, dead_zone().problem);
   if (sweeps.empty()) return;
   document.heading(3, "Kinks, located and not");
-  auto const part = [&](bool located) {
-    auto list = sweeps;
-    std::erase_if(list, [&](Sweep const& s) { return has_word(s.like().variant, "unlocated") == located; });
-    return list;
-  };
-  add_figure(
-      document,
-      {.name = "dead-zone-kinks",
-       .caption = "Attitude error at the end against the step, on actuators with kinks: steps that end "
-                  "on the kinks, and steps across.",
-       .panels = {error_panel(facts, "kinks located", part(true)), error_panel(facts, "not located", part(false))},
-       .columns = 2,
-       .same_y = true});
+  auto const located = part_of(sweeps, true), not_located = part_of(sweeps, false);
+  add_figure(document,
+             {.name = "dead-zone-kinks",
+              .caption = "Attitude error at the end against the step, on actuators with kinks: steps that end "
+                         "on the kinks, and steps across.",
+              .panels = {error_panel(facts, "kinks located", located), error_panel(facts, "not located", not_located)},
+              .columns = 2,
+              .same_y = true});
   document.add(
       error_table("dead-zone-kinks",
                   "Attitude error at the end [rad] by step, the measured order, and how many kinks a run ended "
                   "a step on.",
                   sweeps));
-  std::string const with = orders_in_words(part(true)), without = orders_in_words(part(false));
+  std::string const with = orders_in_words(located), without = orders_in_words(not_located);
   if (with.empty() && without.empty()) {
     double bar = 0;
     for (Sweep const& sweep : sweeps) bar = std::max(bar, finite(sweep.runs.front()->reference_bar).value_or(0));

@@ -122,6 +122,17 @@ struct Document {
   void add(Figure figure) { blocks.emplace_back(std::move(figure)); }
 };
 
+/// One function for all kinds of block, from one for each: std::visit(Overload{...}, block).
+template <class... F>
+struct Overload : F... {
+  using F::operator()...;
+};
+template <class... F>
+Overload(F...) -> Overload<F...>;  // g++ knows that by itself, clang 16 does not
+
+/// Texts of a table up to this length stay on one line.
+inline constexpr std::size_t short_text = 36;
+
 /// True if that column is for the CSV file alone.
 inline bool is_hidden(Table const& table, std::size_t column) {
   return column < table.columns.size() && table.columns[column].csv_only;

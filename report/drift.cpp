@@ -14,8 +14,6 @@ namespace {
 using results::Cell;
 using results::Record;
 
-/// Exact zeros have no place on a logarithmic axis: they are drawn here.
-constexpr double floor_of_figure = 1e-17;
 /// Points per curve: as many as a picture can show.
 constexpr int bins = 160;
 
@@ -101,7 +99,7 @@ std::vector<Point> thinned(results::Series const& series, std::string_view colum
   if (!t || !value) return {};
   for (auto const& row : series.rows) {
     if (row.size() <= std::max(*t, *value) || !(row[*t] > 0) || !std::isfinite(row[*value])) continue;
-    double const y = std::max(std::abs(row[*value]), floor_of_figure);
+    double const y = std::max(std::abs(row[*value]), drawn_zero);
     int const bin = static_cast<int>(std::floor(std::log10(row[*t]) * bins / 4));
     auto const [at, is_new] = largest.try_emplace(bin, Point{row[*t], y});
     if (!is_new && y > at->second.y) at->second = {row[*t], y};

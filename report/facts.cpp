@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
 #include <tuple>
 
-#include "report/text.hpp"
+#include "report/palette.hpp"
 
 namespace polhode::report {
 namespace {
@@ -33,7 +34,8 @@ std::string label_of(Cell const& c, int digits = 6) {
   for (auto const& [name, values] : c.set) {
     std::vector<std::string> numbers;
     for (double const v : values) numbers.push_back(significant(v, digits));
-    label += fmt::format(", {} = ({})", name, fmt::join(numbers, " "));
+    std::string const all = fmt::format("{}", fmt::join(numbers, " "));
+    label += fmt::format(", {} = {}", name, numbers.size() == 1 ? all : "(" + all + ")");
   }
   if (c.t_end > 0) label += fmt::format(", {} s", significant(c.t_end, digits));
   if (c.seed != 1) label += fmt::format(", seed {}", c.seed);
@@ -45,32 +47,16 @@ double coarseness(Cell const& c) {
   return finite(c.h).value_or(finite(c.rtol).value_or(0));
 }
 
-struct Price {
-  double value, low, high;
-};
-
-std::optional<Price> price_of(Record const& run, Measure measure) {
-  if (measure == Measure::evaluations) {
-    if (!run.evaluations || *run.evaluations <= 0) return {};
-    auto const n = static_cast<double>(*run.evaluations);
-    return Price{n, n, n};
-  }
-  if (!run.cpu_time_s || !std::isfinite(run.cpu_time_s->median) || run.cpu_time_s->median <= 0) return {};
-  auto const& t = *run.cpu_time_s;
-  bool const interval = t.low > 0 && std::isfinite(t.high) && t.low <= t.median && t.median <= t.high;
-  return interval ? Price{t.median, t.low, t.high} : Price{t.median, t.median, t.median};
-}
-
-/// The price at the target itself: on the straight line, in logarithms, between the run and a coarser one of its sweep
+/// The cost of the target itself: on the straight line, in logarithms, between the run and a coarser one of its sweep
 /// that misses the target. Absent if the two do not bracket it.
-std::optional<Price> between(Record const& run, Record const& coarser, double target, Measure measure) {
-  auto const fine = price_of(run, measure), coarse = price_of(coarser, measure);
+std::optional<Estimate> between(Record const& run, Record const& coarser, double target, Measure measure) {
+  auto const fine = cost_of(run, measure), coarse = cost_of(coarser, measure);
   if (!fine || !coarse || !is_ok(coarser) || below_bar(run) || below_bar(coarser)) return {};
   double const e1 = finite(run.attitude_error_max).value_or(0), e0 = finite(coarser.attitude_error_max).value_or(0);
   if (!(e1 > 0 && e0 > target && e1 <= target && coarse->value <= fine->value)) return {};
   double const share = std::log(target / e1) / std::log(e0 / e1);
   auto const mean = [&](double a, double b) { return std::exp((1 - share) * std::log(a) + share * std::log(b)); };
-  return Price{mean(fine->value, coarse->value), mean(fine->low, coarse->low), mean(fine->high, coarse->high)};
+  return Estimate{mean(fine->value, coarse->value), mean(fine->low, coarse->low), mean(fine->high, coarse->high)};
 }
 
 /// Place of an instance in every list; what is set or aside comes after what is asked.
@@ -81,6 +67,39 @@ std::size_t rank_of(Cell const& c) {
     ++rank;
   }
   return rank;
+}
+
+/// A place for each integrator, from which its colour and its symbol follow: those that ran on most problems choose
+/// first, and each takes the colour that it shares with others in the fewest pictures.
+std::map<std::string, int> styles_of(std::vector<Instance> const& instances) {
+  using Picture = std::pair<Instance const*, std::string>;  // a problem in one formulation
+  std::map<std::string, std::set<Picture>> where;
+  for (Instance const& instance : instances) {
+    for (Record const* run : instance.runs) {
+      auto& pictures = where[run->of.integrator];
+      if (run->status != results::Status::refused) pictures.emplace(&instance, run->of.formulation);
+    }
+  }
+  std::vector<std::string> names;
+  for (auto const& [name, pictures] : where) names.push_back(name);
+  std::ranges::stable_sort(names, std::greater{},
+                           [&](std::string const& name) { return std::pair(where[name].size(), !is_rival(name)); });
+  std::array<std::vector<std::string>, curve_colours.size()> of_colour;
+  std::map<std::string, int> looks;
+  for (std::string const& name : names) {
+    auto const shared = [&](std::vector<std::string> const& others) {
+      std::size_t n = 0;
+      for (std::string const& other : others) {
+        for (Picture const& picture : where[other]) n += where[name].count(picture);
+      }
+      return std::pair(n, others.size());
+    };
+    auto const best = std::ranges::min_element(of_colour, {}, shared);
+    looks[name] =
+        static_cast<int>(static_cast<std::size_t>(best - of_colour.begin()) + of_colour.size() * best->size());
+    best->push_back(name);
+  }
+  return looks;
 }
 
 }  // namespace
@@ -171,21 +190,27 @@ bool is_aside(Cell const& cell) {
   return std::ranges::any_of(words, [&](auto word) { return has_word(cell.variant, word); });
 }
 
+std::optional<Estimate> cost_of(Record const& run, Measure measure) {
+  if (measure == Measure::evaluations) {
+    if (!run.evaluations || *run.evaluations <= 0) return {};
+    auto const n = static_cast<double>(*run.evaluations);
+    return Estimate{n, n, n};
+  }
+  if (!run.cpu_time_s || !std::isfinite(run.cpu_time_s->median) || run.cpu_time_s->median <= 0) return {};
+  auto const& t = *run.cpu_time_s;
+  bool const interval = t.low > 0 && std::isfinite(t.high) && t.low <= t.median && t.median <= t.high;
+  return interval ? Estimate{t.median, t.low, t.high} : Estimate{t.median, t.median, t.median};
+}
+
 std::optional<Cost> cheapest(Sweep const& sweep, std::optional<double> target, Measure measure) {
   std::optional<Cost> best;
   for (std::size_t i = 0; i < sweep.runs.size(); ++i) {
     Record const& run = *sweep.runs[i];
-    auto const price = price_of(run, measure);
+    auto const cost = cost_of(run, measure);
     bool const serves = target ? reaches(run, *target) : is_ok(run);
-    if (!price || !serves || (best && best->measured <= price->value)) continue;
-    best = Cost{price->value, price->low, price->high, &run, price->value, false};
-    auto const exact_price = i > 0 && target ? between(run, *sweep.runs[i - 1], *target, measure) : std::nullopt;
-    if (exact_price) {
-      best->value = exact_price->value;
-      best->low = exact_price->low;
-      best->high = exact_price->high;
-      best->interpolated = true;
-    }
+    if (!cost || !serves || (best && best->measured <= cost->value)) continue;
+    auto const at_the_target = i > 0 && target ? between(run, *sweep.runs[i - 1], *target, measure) : std::nullopt;
+    best = Cost{at_the_target.value_or(*cost), &run, cost->value, at_the_target.has_value()};
   }
   return best;
 }
@@ -204,15 +229,21 @@ std::vector<Cost> ranking(Instance const& instance, std::optional<double> target
   return sorted;
 }
 
+Cost const* first_of(std::vector<Cost> const& ranked, bool rivals) {
+  auto const found =
+      std::ranges::find_if(ranked, [&](Cost const& cost) { return is_rival(cost.run->of.integrator) == rivals; });
+  return found == ranked.end() ? nullptr : &*found;
+}
+
 Entry at_target(Cost const& cost, Measure measure) {
   if (!cost.interpolated) return absent;
-  if (measure == Measure::time) return cpu_time(results::CpuTime{cost.value, cost.low, cost.high});
+  if (measure == Measure::time) return cpu_time(cost);
   return {significant(cost.value, 4), exact(cost.value)};
 }
 
 Measure measure_of(Instance const& instance) {
   bool const timed = std::ranges::any_of(
-      instance.runs, [](Record const* run) { return is_ok(*run) && price_of(*run, Measure::time).has_value(); });
+      instance.runs, [](Record const* run) { return is_ok(*run) && cost_of(*run, Measure::time).has_value(); });
   return timed ? Measure::time : Measure::evaluations;
 }
 
@@ -240,15 +271,13 @@ Facts::Facts(results::Contents const& all) : contents(all) {
     }
   }
   std::map<std::string, std::size_t> index;
-  std::set<std::pair<bool, std::string>> integrators;
   for (Record const* run : runs) {
     auto const [place, is_new] = index.try_emplace(label_of(run->of, 17), instances.size());
     if (is_new) instances.push_back({label_of(run->of), {}});
     instances[place->second].runs.push_back(run);
-    integrators.emplace(is_rival(run->of.integrator), run->of.integrator);
   }
   std::ranges::stable_sort(instances, {}, [](Instance const& i) { return std::pair(rank_of(i.like()), i.label); });
-  for (auto const& [rival, name] : integrators) styles_.emplace(name, static_cast<int>(styles_.size()));
+  styles_ = styles_of(instances);
   for (results::Series const& series : all.series) series_[{series.cell, series.name}] = &series;
 }
 

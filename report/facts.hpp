@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "report/document.hpp"
+#include "report/text.hpp"
 #include "results/store.hpp"
 
 namespace polhode::report {
@@ -19,6 +20,10 @@ bool is_rival(std::string_view integrator);
 bool is_foil(std::string_view integrator);
 /// A quantity that drifts by less is kept: some hundred roundings, accumulated over the horizon.
 inline constexpr double kept = 1e-13;
+/// Exact zeros have no place on a logarithmic axis: they are drawn here.
+inline constexpr double drawn_zero = 1e-17;
+/// Attitude errors below are not drawn, and below the larger one the picture is shaded, since rounding rules [rad].
+inline constexpr double least_error = 1e-16, rounding_rules = 1e-13;
 /// True if the canonical variant ("case1,g1") holds that word.
 bool has_word(std::string_view variant, std::string_view word);
 /// The variant without one of its words: "case1,g1" without "case1" is "g1".
@@ -62,9 +67,11 @@ bool is_aside(results::Cell const& cell);
 /// What cost is counted in.
 enum class Measure { time, evaluations };
 
-/// The cost of reaching an accuracy.
-struct Cost {
-  double value = 0, low = 0, high = 0;   ///< [s] with its interval, or evaluations
+/// What a run cost, [s] or evaluations; none if it was not timed or counted.
+std::optional<Estimate> cost_of(results::Record const& run, Measure measure);
+
+/// The cost of reaching an accuracy, [s] or evaluations.
+struct Cost : Estimate {
   results::Record const* run = nullptr;  ///< the cheapest run that reaches it
   double measured = 0;                   ///< the cost of that run
   bool interpolated = false;             ///< `value` is at the target itself, between `run` and its neighbour
@@ -75,6 +82,8 @@ struct Cost {
 std::optional<Cost> cheapest(Sweep const& sweep, std::optional<double> target, Measure measure);
 /// Cheapest way of each integrator to an attitude error of `target` [rad], cheapest first; without one as `cheapest`.
 std::vector<Cost> ranking(Instance const& instance, std::optional<double> target, Measure measure);
+/// The first of a ranking that is a rival, or that is ours; null if none is.
+Cost const* first_of(std::vector<Cost> const& ranked, bool rivals);
 /// What the target itself costs, with its interval in the unit shown; `absent` unless it is interpolated.
 Entry at_target(Cost const& cost, Measure measure);
 /// Time if some run of the instance was timed, otherwise evaluations.

@@ -1,45 +1,28 @@
-#include <fcntl.h>
+/// A picture as a gnuplot script, data included.
 #include <fmt/format.h>
-#include <spawn.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
-#include <fstream>
-#include <future>
 #include <span>
-#include <sstream>
-#include <thread>
 
+#include "report/palette.hpp"
 #include "report/render.hpp"
-#include "report/report.hpp"
 #include "report/text.hpp"
-
-extern char** environ;
 
 namespace polhode::report {
 namespace {
 
-/// Okabe and Ito's colours without the yellow, which is lost on white, and darker ones of Tol's. Sixteen colours alone
-/// cannot be told apart by the colour-blind: symbols help, and dashes.
-constexpr std::array<char const*, 16> colours{"#56B4E9", "#E69F00", "#009E73", "#0072B2", "#000000", "#8C510A",
-                                              "#CC79A7", "#882255", "#999933", "#332288", "#CC3311", "#117733",
-                                              "#D55E00", "#44AA99", "#AA4499", "#6B6BD6"};
 /// gnuplot's point types: circle, square, triangles up and down, diamond, pentagon; x, + and * have no inside. Colour
 /// and symbol repeat together only after 144 curves, or 48 open ones.
 constexpr std::array<int, 9> filled{7, 5, 9, 11, 13, 15, 2, 1, 3};
 constexpr std::array<int, 6> open{6, 4, 8, 10, 12, 14};
-constexpr char const* grey = "#9A9A9A";
 
 // The layout, in pixels.
 constexpr double plot_width = 300, wide_plot_width = 560, plot_height = 300, low_plot_height = 170;
 constexpr double left = 84, right = 18, top = 16, bottom = 54, title_height = 20, letter = 7.6, key_line = 22.5;
-/// Of an inch: a pixel of the SVG is a point of the PDF.
-constexpr double points = 72;
+/// A pixel of the SVG is a point of the PDF.
+constexpr double points_per_inch = 72;
 constexpr double poster_width = 1000, poster_height = 420, poster_left = 96, poster_right = 22, poster_top = 46,
                  poster_bottom = 146, poster_key = 84;
 
@@ -124,28 +107,39 @@ std::string axis_commands(char name, Axis const& axis, Range range) {
 
 std::string line_look(Style const& style, bool poster) {
   return fmt::format("lw {} dt {} lc rgb '{}'", poster ? 2.6 : 1.8, static_cast<int>(style.dash) + 1,
-                     colours[static_cast<std::size_t>(style.index) % colours.size()]);
+                     curve_colours[static_cast<std::size_t>(style.index) % curve_colours.size()].light);
 }
 
 std::string point_look(Style const& style, bool is_grey, bool poster) {
   auto const index = static_cast<std::size_t>(style.index);
   int const symbol = style.open ? open[index % open.size()] : filled[index % filled.size()];
   return fmt::format("pt {} ps {} lw {} lc rgb '{}'", symbol, poster ? 0.9 : 0.7, poster ? 2.0 : 1.3,
-                     is_grey ? grey : colours[index % colours.size()]);
+                     is_grey ? pale.light : curve_colours[index % curve_colours.size()].light);
 }
 
-/// Data block `block` of a curve: the coloured points, or the grey ones; a line runs through both.
-std::string data_block(std::string const& block, Panel const& panel, Curve const& curve, int mark) {
-  std::string out = fmt::format("{} << EOD\n", block);
+/// Points of a curve: a line runs through all of them, symbols are coloured or grey.
+enum class Part { all, coloured, grey };
+
+bool is_in(Part part, Panel const& panel, Point const& p) {
+  return drawable(panel, p) && (part == Part::all || p.grey == (part == Part::grey));
+}
+
+bool has(Panel const& panel, Curve const& curve, Part part) {
+  return std::ranges::any_of(curve.points, [&](Point const& p) { return is_in(part, panel, p); });
+}
+
+/// gnuplot's name for the points of the k-th curve of the i-th panel.
+std::string block_name(std::size_t i, std::size_t k, Part part) {
+  std::string_view const end = part == Part::all ? "" : part == Part::grey ? "_1" : "_0";
+  return fmt::format("$p{}c{}{}", i, k, end);
+}
+
+std::string data_block(std::string const& name, Panel const& panel, Curve const& curve, Part part) {
+  std::string out = fmt::format("{} << EOD\n", name);
   for (Point const& p : curve.points) {
-    if (drawable(panel, p) && (mark < 0 || p.grey == (mark == 1))) out += fmt::format("{} {}\n", p.x, p.y);
+    if (is_in(part, panel, p)) out += fmt::format("{} {}\n", p.x, p.y);
   }
   return out + "EOD\n";
-}
-
-bool has(Panel const& panel, Curve const& curve, int mark) {
-  return std::ranges::any_of(curve.points,
-                             [&](Point const& p) { return drawable(panel, p) && (mark < 0 || p.grey == (mark == 1)); });
 }
 
 struct Legend {
@@ -165,9 +159,9 @@ Legend legend_of(std::span<Panel const> panels, bool poster) {
   bool any_grey = false;
   for (Panel const& panel : panels) {
     for (Curve const& curve : panel.curves) {
-      any_grey = any_grey || has(panel, curve, 1);
+      any_grey = any_grey || has(panel, curve, Part::grey);
       bool const listed = curve.label.empty() || std::ranges::find(seen, curve.label) != seen.end();
-      if (!has(panel, curve, -1) || listed) continue;
+      if (!has(panel, curve, Part::all) || listed) continue;
       seen.push_back(curve.label);
       Style const& style = curve.style;
       if (!style.points) {
@@ -185,28 +179,28 @@ Legend legend_of(std::span<Panel const> panels, bool poster) {
   return legend;
 }
 
-/// The clauses that draw one curve: its line, its points, its grey points.
-void plot_clauses(std::vector<std::string>& out, std::string const& block, Panel const& panel, std::size_t k,
-                  bool poster) {
+/// The clauses that draw the k-th curve of the i-th panel: its line, its points, its grey points.
+void plot_clauses(std::vector<std::string>& out, Panel const& panel, std::size_t i, std::size_t k, bool poster) {
   Curve const& curve = panel.curves[k];
   // where two curves coincide, the symbols of both are seen
   std::size_t const first = k * static_cast<std::size_t>(curve.style.every) / panel.curves.size();
-  if (!has(panel, curve, -1)) return;
-  if (curve.style.line) out.push_back(fmt::format("{} with lines {} notitle", block, line_look(curve.style, poster)));
-  for (int const mark : {0, 1}) {
-    if (!curve.style.points || !has(panel, curve, mark)) continue;
-    out.push_back(fmt::format("{}_{} every {}::{} with points {} notitle", block, mark, curve.style.every, first,
-                              point_look(curve.style, mark == 1, poster)));
+  if (!has(panel, curve, Part::all)) return;
+  if (curve.style.line)
+    out.push_back(fmt::format("{} with lines {} notitle", block_name(i, k, Part::all), line_look(curve.style, poster)));
+  for (Part const part : {Part::coloured, Part::grey}) {
+    if (!curve.style.points || !has(panel, curve, part)) continue;
+    out.push_back(fmt::format("{} every {}::{} with points {} notitle", block_name(i, k, part), curve.style.every,
+                              first, point_look(curve.style, part == Part::grey, poster)));
   }
 }
 
 /// The part of the panel where rounding rules, in light grey.
-std::string shade(Panel const& panel, Range y) {
+std::string rounding_object(Panel const& panel, Range y) {
   if (!panel.y.log || panel.rounding <= std::max(y.low, panel.y.least)) return "unset object\n";
   return fmt::format(
-      "set object 1 rectangle from graph 0, graph 0 to graph 1, first {} behind fillcolor rgb '#EFEFEC' "
+      "set object 1 rectangle from graph 0, graph 0 to graph 1, first {} behind fillcolor rgb '{}' "
       "fillstyle solid noborder\n",
-      std::min(panel.rounding, y.high * 1.4));
+      std::min(panel.rounding, y.high * 1.4), shade.light);
 }
 
 /// Where things are, as shares of the picture.
@@ -216,11 +210,12 @@ struct Layout {
     double left, right, bottom, top;
   };
   std::vector<Box> boxes;            ///< of each panel's frame
-  std::vector<std::string> legends;  ///< of each panel: gnuplot's `set key`; of most, none
+  std::string legend;                ///< of all panels together: gnuplot's `set key`; empty if each has its own
+  std::vector<std::string> legends;  ///< of each panel
 };
 
 /// Panels in rows; the legend stands to their right, or in the place that they leave free.
-Layout rows_of_panels(Figure const& figure, Legend const& legend, std::size_t last_drawn) {
+Layout rows_of_panels(Figure const& figure, Legend const& legend) {
   int const columns = std::max(1, figure.columns);
   int const rows = (static_cast<int>(figure.panels.size()) + columns - 1) / columns;
   double const cell_width = (columns == 1 ? wide_plot_width : plot_width) + left + right;
@@ -238,18 +233,17 @@ Layout rows_of_panels(Figure const& figure, Legend const& legend, std::size_t la
     double const y = at.height - static_cast<double>(static_cast<int>(i) / columns + 1) * cell_height;
     at.boxes.push_back({(x + left) / at.width, (x + cell_width - right) / at.width, (y + bottom) / at.height,
                         (y + cell_height - above) / at.height});
-    at.legends.emplace_back();
   }
-  at.legends[last_drawn] = fmt::format(
+  at.legend = fmt::format(
       "set key at screen {}, screen {} left top vertical Left reverse noenhanced samplen 2.5 spacing 1.15 textcolor "
-      "rgb '#333333'\n",
-      key_x / at.width, 1 - key_y / at.height);
+      "rgb '{}'\n",
+      key_x / at.width, 1 - key_y / at.height, letters);
   return at;
 }
 
 /// Panels beside each other, each with its legend below.
 Layout poster(Figure const& figure) {
-  Layout at{poster_width, poster_height, {}, {}};
+  Layout at{poster_width, poster_height, {}, {}, {}};
   auto const n = static_cast<double>(figure.panels.size());
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
     double const x = static_cast<double>(i) / n, next = static_cast<double>(i + 1) / n;
@@ -257,140 +251,83 @@ Layout poster(Figure const& figure) {
                         1 - poster_top / at.height});
     at.legends.push_back(
         fmt::format("set key at screen {}, screen {} left top vertical maxrows {} Left reverse noenhanced samplen 2 "
-                    "spacing 1.1 width -3 textcolor rgb '#333333'\n",
-                    x + 30 / at.width, poster_key / at.height, figure.panels[i].curves.size() > 4 ? 3 : 2));
+                    "spacing 1.1 width -3 textcolor rgb '{}'\n",
+                    x + 30 / at.width, poster_key / at.height, figure.panels[i].curves.size() > 4 ? 3 : 2, letters));
   }
   return at;
 }
 
 std::string joined(std::vector<std::string> const& clauses) {
-  std::string out;
-  for (std::size_t i = 0; i < clauses.size(); ++i) out += (i > 0 ? ", \\\n  " : "") + clauses[i];
-  return out;
+  return fmt::format("{}", fmt::join(clauses, ", \\\n  "));
 }
 
-/// Runs gnuplot on NAME.gp inside `folder`, once after each command of `before`; returns what went wrong, or nothing.
-std::string run_gnuplot(std::string const& name, std::filesystem::path const& folder, std::vector<std::string> before) {
-  std::string script = name + ".gp", program = "gnuplot", plain = "--default-settings", first = "-e";
-  std::vector<char*> arguments{program.data(), plain.data()};
-  for (std::string& command : before) {
-    for (std::string* word : {&first, &command, &script}) arguments.push_back(word->data());
-  }
-  arguments.push_back(nullptr);
-  std::string const log = name + ".log";
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
-  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, 1, "/dev/null", O_WRONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, 2, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
-  pid_t child = 0;
-  int const failure = posix_spawnp(&child, program.c_str(), &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (failure == ENOENT) return "gnuplot is not on the PATH";
-  if (failure != 0) return fmt::format("gnuplot cannot be started: {}", std::strerror(failure));
-  int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return "";
-  return fmt::format("gnuplot failed, see figures/{}", log);
+std::string margins(Layout::Box const& box) {
+  return fmt::format(
+      "set lmargin at screen {}\nset rmargin at screen {}\nset bmargin at screen {}\nset tmargin at screen {}\n",
+      box.left, box.right, box.bottom, box.top);
+}
+
+/// The legend as a plot of its own, as large as the picture: gnuplot leaves out entries that a lower one has no room
+/// for.
+std::string legend_plot(std::string const& place, std::vector<std::string> clauses) {
+  if (place.empty() || clauses.empty()) return "";
+  clauses.insert(clauses.begin(), "NaN notitle");
+  return margins({0, 1, 0, 1}) +
+         "unset border\nunset tics\nunset xlabel\nunset ylabel\nunset title\nunset object\nunset logscale\n"
+         "set xrange [0:1]\nset yrange [0:1]\n" +
+         place + "plot " + joined(clauses) + "\n";
 }
 
 }  // namespace
 
 std::string gnuplot_script(Figure const& figure) {
   Range all_y;
-  std::size_t last_drawn = 0;
-  for (std::size_t i = 0; i < figure.panels.size(); ++i) {
-    Range const y = Extent(figure.panels[i]).y;
+  for (Panel const& panel : figure.panels) {
+    Range const y = Extent(panel).y;
     if (!y.any) continue;
-    last_drawn = i;
     all_y.include(y.low);
     all_y.include(y.high);
   }
   Legend const common = legend_of(figure.panels, figure.poster);
-  Layout const at = figure.poster ? poster(figure) : rows_of_panels(figure, common, last_drawn);
+  Layout const at = figure.poster ? poster(figure) : rows_of_panels(figure, common);
   std::string data, plots;
   for (std::size_t i = 0; i < figure.panels.size(); ++i) {
     Panel const& panel = figure.panels[i];
     std::vector<std::string> clauses;
     for (std::size_t k = 0; k < panel.curves.size(); ++k) {
       Curve const& curve = panel.curves[k];
-      std::string const block = fmt::format("$p{}c{}", i, k);
-      data += data_block(block, panel, curve, -1);
-      for (int const mark : {0, 1}) {
-        if (curve.style.points) data += data_block(fmt::format("{}_{}", block, mark), panel, curve, mark);
+      for (Part const part : {Part::all, Part::coloured, Part::grey}) {
+        if (part == Part::all || curve.style.points) data += data_block(block_name(i, k, part), panel, curve, part);
       }
-      plot_clauses(clauses, block, panel, k, figure.poster);
+      plot_clauses(clauses, panel, i, k, figure.poster);
     }
     if (clauses.empty()) continue;
-    // gnuplot drops what it would have to draw below the panel that it draws the legend with: so take the lowest.
-    if (!at.legends[i].empty()) {
-      Legend const own = figure.poster ? legend_of({&panel, 1}, true) : common;
+    if (figure.poster) {
+      Legend const own = legend_of({&panel, 1}, true);
       clauses.insert(clauses.end(), own.entries.begin(), own.entries.end());
     }
     Range const x_range = Extent(panel).x, y_range = figure.same_y ? all_y : Extent(panel).y;
-    Layout::Box const& box = at.boxes[i];
-    plots += fmt::format("set lmargin at screen {}\nset rmargin at screen {}\n", box.left, box.right);
-    plots += fmt::format("set bmargin at screen {}\nset tmargin at screen {}\n", box.bottom, box.top);
+    plots += margins(at.boxes[i]);
     plots += fmt::format("set title {} font ',{}' noenhanced\n", in_quotes(panel.title), figure.poster ? 17 : 13);
-    plots += axis_commands('x', panel.x, x_range) + axis_commands('y', panel.y, y_range) + shade(panel, y_range);
-    plots += at.legends[i].empty() ? "unset key\n" : at.legends[i];
+    plots +=
+        axis_commands('x', panel.x, x_range) + axis_commands('y', panel.y, y_range) + rounding_object(panel, y_range);
+    plots += figure.poster ? at.legends[i] : "unset key\n";
     plots += "plot " + joined(clauses) + "\n";
   }
+  plots += legend_plot(at.legend, common.entries);
   return fmt::format(
       "# Draws {0}.svg: gnuplot {0}.gp\n# Draws {0}.pdf: gnuplot -e pdf=1 {0}.gp\n{1}"
       "if (!exists('pdf')) pdf = 0\n"
-      "if (!pdf) set terminal svg size {2:.0f},{3:.0f} enhanced font 'sans-serif,{5}' background '#FDFDFC'\n"
+      "if (!pdf) set terminal svg size {2:.0f},{3:.0f} enhanced font 'sans-serif,{5}' background '{9}'\n"
       "if (!pdf) set output '{0}.svg'\n"
       "if (pdf) set terminal pdfcairo size {7:.2f}in,{8:.2f}in enhanced font 'sans-serif,{5}' fontscale 0.77 linewidth "
       "1.6\nif (pdf) set output '{0}.pdf'\n"
-      "set border 31 lc rgb '#555555'\nset tics textcolor rgb '#333333'\n"
-      "set grid xtics ytics lt 1 lw 0.6 lc rgb '#DDDDDD'\nset xlabel offset 0, 0.4\nset title offset 0, -0.4\nset "
+      "set border 31 lc rgb '{10}'\nset tics textcolor rgb '{11}'\n"
+      "set grid xtics ytics lt 1 lw 0.6 lc rgb '{12}'\nset xlabel offset 0, 0.4\nset title offset 0, -0.4\nset "
       "ylabel offset {6}, 0\n"
       "set multiplot\n{4}unset multiplot\nset output\n",
       figure.name, data, at.width, at.height, plots, figure.poster ? 15 : 13, figure.poster ? 1.5 : 0,
-      at.width / points, at.height / points);
-}
-
-void draw(Figure& figure, std::filesystem::path const& folder) {
-  std::filesystem::path const script = folder / (figure.name + ".gp");
-  std::filesystem::path const picture = folder / (figure.name + ".svg");
-  std::error_code ignored;
-  std::filesystem::path const print = folder / (figure.name + ".pdf");
-  // pictures of earlier records must not pass for these
-  std::filesystem::remove(picture, ignored);
-  std::filesystem::remove(print, ignored);
-  std::ofstream out(script);
-  out << gnuplot_script(figure);
-  out.close();
-  if (!out) throw ReportError(fmt::format("{}: cannot be written", script.string()));
-  if (!run_gnuplot(figure.name, folder, {"pdf = 0", "pdf = 1"}).empty()) {
-    // A gnuplot without Cairo draws no PDF: the report is complete all the same.
-    figure.why_not = run_gnuplot(figure.name, folder, {"pdf = 0"});
-    if (!figure.why_not.empty()) return;
-    std::filesystem::remove(print, ignored);
-  }
-  std::filesystem::remove(folder / (figure.name + ".log"), ignored);
-  std::ifstream in(picture);
-  std::ostringstream svg;
-  svg << in.rdbuf();
-  if (svg.str().find("</svg>") == std::string::npos) {
-    figure.why_not = "gnuplot left no complete picture";
-    return;
-  }
-  figure.svg = svg.str();
-}
-
-void draw_all(std::vector<Figure*> const& figures, std::filesystem::path const& folder) {
-  std::size_t const workers = std::min<std::size_t>(figures.size(), std::max(1U, std::thread::hardware_concurrency()));
-  std::atomic<std::size_t> next = 0;
-  auto const work = [&] {
-    for (std::size_t i = next++; i < figures.size(); i = next++) draw(*figures[i], folder);
-  };
-  std::vector<std::future<void>> running;
-  for (std::size_t i = 0; i < workers; ++i) running.push_back(std::async(std::launch::async, work));
-  for (auto& one : running) one.get();
+      at.width / points_per_inch, at.height / points_per_inch, paper, frame, letters, grid);
 }
 
 }  // namespace polhode::report

@@ -1,3 +1,6 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <ranges>
@@ -12,10 +15,6 @@ using results::Record;
 
 /// Norm drift is shown at this step [s].
 constexpr double step = 0.1;
-/// Exact zeros have no place on a logarithmic axis: they are drawn here.
-constexpr double least_drift = 1e-17;
-/// Curves of cost end where rounding takes over [rad].
-constexpr double rounding = 1e-13;
 
 struct Line {
   std::string_view integrator, formulation, label;
@@ -45,7 +44,7 @@ Panel drift_panel(Facts const& facts) {
                             {"rk4", "quaternion", "rk4"},
                             {"gauss2", "quaternion", "gauss2, to round-off"}};
   constexpr Dash dashes[] = {Dash::solid, Dash::solid, Dash::dashed, Dash::solid};
-  Panel panel{.x = {"t [s]", true}, .y = {"|q.q - 1|", true, least_drift}, .title = "Norm drift without projection"};
+  Panel panel{.x = {"t [s]", true}, .y = {"|q.q - 1|", true, drawn_zero}, .title = "Norm drift without projection"};
   for (Instance const& instance : facts.instances) {
     if (!is_captured_target(instance.like())) continue;
     for (Line const& line : lines) {
@@ -59,7 +58,7 @@ Panel drift_panel(Facts const& facts) {
         curve.style.dash = dashes[&line - lines];
         for (auto const& row : series->rows) {
           if (row.size() <= std::max(*t, *drift) || !(row[*t] > 0)) continue;
-          curve.points.push_back({row[*t], std::max(std::abs(row[*drift]), least_drift)});
+          curve.points.push_back({row[*t], std::max(std::abs(row[*drift]), drawn_zero)});
         }
         curve.style.every = std::max(1, static_cast<int>(curve.points.size()) / 8);
         if (!curve.points.empty()) panel.curves.push_back(std::move(curve));
@@ -75,8 +74,8 @@ Panel cost_panel(Facts const& facts) {
   Instance const* instance = facts.headline(headlines[0]);
   Panel panel{.x = {"", true}, .y = {"attitude error [rad]", true}, .title = "Accuracy against cost, free body"};
   if (!instance) return panel;
-  bool const timed = measure_of(*instance) == Measure::time;
-  panel.x.label = timed ? "CPU time of the solve [s]" : "evaluations";
+  Measure const measure = measure_of(*instance);
+  panel.x.label = measure == Measure::time ? "CPU time of the solve [s]" : "evaluations";
   for (Line const& line : raced) {
     Sweep const* shown = nullptr;
     auto const sweeps = instance->sweeps();
@@ -87,12 +86,10 @@ Panel cost_panel(Facts const& facts) {
     Curve curve{std::string(line.label), facts.style_of(shown->like())};
     for (Record const* run : shown->runs) {
       auto const error = finite(run->attitude_error_max);
-      std::optional<double> cost;
-      if (timed && run->cpu_time_s) cost = run->cpu_time_s->median;
-      if (!timed && run->evaluations) cost = static_cast<double>(*run->evaluations);
-      if (!is_ok(*run) || !error || *error <= 0 || !finite(cost) || *cost <= 0) continue;
-      curve.points.push_back({*cost, *error, below_bar(*run)});
-      if (*error < rounding) break;
+      auto const cost = cost_of(*run, measure);
+      if (!is_ok(*run) || !error || *error <= 0 || !cost) continue;
+      curve.points.push_back({cost->value, *error, below_bar(*run)});
+      if (*error < rounding_rules) break;
     }
     if (!curve.points.empty()) panel.curves.push_back(std::move(curve));
   }
@@ -137,20 +134,20 @@ Table headline_table(Facts const& facts) {
 
 void add_headline(Document& document, Facts const& facts) {
   Figure figure{.name = "headline", .poster = true};
-  std::string caption;
+  std::vector<std::string> captions;
   if (Panel panel = drift_panel(facts); !panel.curves.empty()) {
     figure.panels.push_back(std::move(panel));
-    caption +=
+    captions.emplace_back(
         "Norm drift: the captured target, uncontrolled, at h = 0.1 s; a Gauss method keeps the norm if its stages are "
-        "solved to round-off, and not with one sweep or a loose tolerance. Exact zeros are drawn at 1e-17. ";
+        "solved to round-off, and not with one sweep or a loose tolerance. Exact zeros are drawn at 1e-17.");
   }
   if (Panel panel = cost_panel(facts); !panel.curves.empty()) {
     figure.panels.push_back(std::move(panel));
-    caption +=
+    captions.emplace_back(
         "Accuracy against cost: largest attitude error over the run; open symbols are other libraries, dashed curves "
-        "adaptive; curves end where rounding takes over.";
+        "adaptive; curves end where rounding takes over.");
   }
-  figure.caption = Text(std::move(caption));
+  figure.caption = fmt::format("{}", fmt::join(captions, " "));
   figure.columns = std::max(1, static_cast<int>(figure.panels.size()));
   if (has_points(figure)) document.add(std::move(figure));
   if (Table table = headline_table(facts); !table.rows.empty()) document.add(std::move(table));

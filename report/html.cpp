@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
+#include "report/palette.hpp"
 #include "report/render.hpp"
 #include "report/text.hpp"
 
@@ -36,15 +38,23 @@ tbody tr:nth-child(even) { background: var(--row); }
 .number { text-align: right; }
 .number, .short { white-space: nowrap; }
 code { font: .9em ui-monospace, "SF Mono", Consolas, "DejaVu Sans Mono", monospace; }
-@media (prefers-color-scheme: dark) { main > figure > .wide > svg { filter: invert(.93) hue-rotate(180deg); } }
 @media (max-width: 46rem) { main > figure > .wide > svg { max-width: none; min-width: 44rem; } }
 @media print { nav { display: none; } }
 )";
 
-template <class... F>
-struct Overload : F... {
-  using F::operator()...;
-};
+/// The colours of curves as variables, --curve-0 and so on, for pictures of either kind.
+std::string colour_variables() {
+  std::string light, dark;
+  auto const declare = [&](std::string const& name, Colour const& colour) {
+    light += fmt::format(" --{}: {};", name, colour.light);
+    dark += fmt::format(" --{}: {};", name, colour.dark);
+  };
+  for (std::size_t i = 0; i < curve_colours.size(); ++i) declare(fmt::format("curve-{}", i), curve_colours[i]);
+  declare("pale", pale);
+  declare("shade", shade);
+  return fmt::format(":root {{ --curves: {};{} }}\n@media (prefers-color-scheme: dark) {{ :root {{{} }} }}\n",
+                     curve_colours.size(), light, dark);
+}
 
 void replace_all(std::string& text, std::string_view from, std::string_view to) {
   for (auto at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
@@ -81,12 +91,10 @@ std::string made_by(std::string_view file) {
   return fmt::format("Data: <a href=\"{0}\">{0}</a>. Made by <code>polhode report DIR</code>.", file);
 }
 
-/// Texts up to this length stay on one line of a table.
-constexpr std::size_t short_text = 36;
-
 std::string render(Table const& table) {
   std::string out = fmt::format(
-      "<figure id=\"{0}\">\n<figcaption><b>Table {0}.</b> {1}</figcaption>\n<div class=\"wide\"><table>\n<thead><tr>",
+      "<figure id=\"table-{0}\">\n<figcaption><b>Table {0}.</b> {1}</figcaption>\n<div "
+      "class=\"wide\"><table>\n<thead><tr>",
       table.name, render(table.caption));
   auto const attribute = [&](std::size_t column) {
     return column < table.columns.size() && table.columns[column].number ? " class=\"number\"" : "";
@@ -111,6 +119,41 @@ std::string render(Table const& table) {
   return out + "</figure>\n";
 }
 
+/// "rgb(86,180,233)", as gnuplot writes #56B4E9.
+std::string in_decimals(std::string_view hex) {
+  auto const part = [&](std::size_t at) { return std::stoi(std::string(hex.substr(at, 2)), nullptr, 16); };
+  return fmt::format("rgb({},{},{})", part(1), part(3), part(5));
+}
+
+/// The page's variables by gnuplot's colours.
+std::map<std::string, std::string> variables_of_colours() {
+  std::map<std::string, std::string> variables{{in_decimals(pale.light), "pale"}, {in_decimals(shade.light), "shade"},
+                                               {in_decimals(paper), "page"},      {in_decimals(frame), "quiet"},
+                                               {in_decimals(grid), "rule"},       {in_decimals(letters), "ink"}};
+  for (std::size_t i = 0; i < curve_colours.size(); ++i)
+    variables[in_decimals(curve_colours[i].light)] = fmt::format("curve-{}", i);
+  return variables;
+}
+
+/// The picture in the page's colours, light or dark.
+std::string in_colours_of_page(std::string svg) {
+  static auto const variables = variables_of_colours();
+  replace_all(svg, "\"black\"", "\"var(--ink)\"");
+  replace_all(svg, paper, "var(--page)");
+  std::string out;
+  std::size_t done = 0;
+  for (auto at = svg.find("rgb("); at != std::string::npos; at = svg.find("rgb(", done)) {
+    std::size_t const end = std::min(svg.find(')', at), svg.size() - 1) + 1;
+    std::string colour = svg.substr(at, end - at);
+    std::erase(colour, ' ');
+    auto const variable = variables.find(colour);
+    out += svg.substr(done, at - done);
+    out += variable == variables.end() ? svg.substr(at, end - at) : fmt::format("var(--{})", variable->second);
+    done = end;
+  }
+  return out + svg.substr(done);
+}
+
 /// The picture without its XML prologue, and with ids that stay unique when many pictures share a page.
 std::string inlined(Figure const& figure) {
   auto const start = figure.svg->find("<svg");
@@ -122,7 +165,7 @@ std::string inlined(Figure const& figure) {
     replace_all(svg, fmt::format("href={}#", quote), fmt::format("href={}#{}", quote, prefix));
   }
   replace_all(svg, "url(#", "url(#" + prefix);
-  return svg;
+  return in_colours_of_page(std::move(svg));
 }
 
 /// Pictures in one page take no more than this [bytes]: further ones are named.
@@ -133,18 +176,19 @@ std::string render(Figure const& figure, std::size_t& room) {
   std::string const caption = render(figure.caption);
   std::string const data = made_by("figures/" + figure.name + ".csv");
   if (!figure.svg) {
-    return fmt::format("<p id=\"{0}\"><b>Figure {0}.</b> {1} The picture was not drawn: {2}. {3}</p>\n", figure.name,
-                       caption, escape_html(figure.why_not), data);
+    return fmt::format("<p id=\"figure-{0}\"><b>Figure {0}.</b> {1} The picture was not drawn: {2}. {3}</p>\n",
+                       figure.name, caption, escape_html(figure.why_not), data);
   }
   if (figure.svg->size() > room) {
     return fmt::format(
-        "<p id=\"{0}\"><b>Figure {0}.</b> {1} The picture stands in <a href=\"figures/{0}.svg\">figures/{0}.svg</a>: "
+        "<p id=\"figure-{0}\"><b>Figure {0}.</b> {1} The picture stands in <a "
+        "href=\"figures/{0}.svg\">figures/{0}.svg</a>: "
         "this page holds no more. {2}</p>\n",
         figure.name, caption, data);
   }
   room -= figure.svg->size();
   return fmt::format(
-      "<figure id=\"{0}\">\n<div class=\"wide\">{1}</div>\n<figcaption><b>Figure {0}.</b> {2} "
+      "<figure id=\"figure-{0}\">\n<div class=\"wide\">{1}</div>\n<figcaption><b>Figure {0}.</b> {2} "
       "{3}</figcaption>\n</figure>\n",
       figure.name, inlined(figure), caption, data);
 }
@@ -185,8 +229,8 @@ std::string to_html(Document const& document, Interactive const& interactive) {
   std::string out = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>{0}</title>\n"
-      "<style>{1}{2}</style>\n</head>\n<body>\n<h1>{0}</h1>\n{3}<main>\n",
-      title, style, interactive.style, contents(document, interactive));
+      "<style>{1}{2}{4}</style>\n</head>\n<body>\n<h1>{0}</h1>\n{3}<main>\n",
+      title, style, colour_variables(), contents(document, interactive), interactive.style);
   int sections = 0;
   std::size_t room = most_pictures;
   auto const print = Overload{

@@ -14,8 +14,6 @@ namespace polhode::report {
 namespace {
 
 constexpr std::size_t rows_of_a_page = 40;
-/// Texts up to this length stay on one line.
-constexpr std::size_t short_text = 36;
 
 /// The character that starts at `i`, which moves behind it. The text is well-formed UTF-8.
 std::uint32_t next_character(std::string_view text, std::size_t& i) {

@@ -47,6 +47,20 @@ std::vector<Sweep> twins(Facts const& facts, std::string_view problem) {
   return fixed_sweeps(facts, [&](Cell const& c) { return of_problem(c) && kinds[key(c)] == 3; });
 }
 
+std::vector<Sweep> part_of(std::vector<Sweep> sweeps, bool located) {
+  std::erase_if(sweeps, [&](Sweep const& s) { return has_word(s.like().variant, "unlocated") == located; });
+  return sweeps;
+}
+
+std::optional<double> largest(Sweep const& sweep, ErrorKind const& kind) {
+  std::optional<double> most;
+  for (Record const* run : sweep.runs) {
+    auto const error = finite(kind.of(*run));
+    if (is_ok(*run) && error) most = std::max(most.value_or(*error), *error);
+  }
+  return most;
+}
+
 results::OrderResult order_of(Sweep const& sweep, double h_most, ErrorKind const& kind) {
   std::vector<results::OrderPoint> points;
   for (Record const* run : sweep.runs) {
@@ -117,8 +131,8 @@ Table error_table(std::string name, std::string caption, std::vector<Sweep> cons
 
 Panel error_panel(Facts const& facts, std::string title, std::vector<Sweep> const& sweeps, ErrorKind const& kind) {
   Panel panel{.x = {"h [s]", true},
-              .y = {std::string(kind.label), true, 1e-16 * kind.scale},
-              .rounding = 1e-13 * kind.scale,
+              .y = {std::string(kind.label), true, least_error * kind.scale},
+              .rounding = rounding_rules * kind.scale,
               .title = std::move(title)};
   for (Sweep const& sweep : sweeps) {
     Cell const& c = sweep.like();

@@ -16,8 +16,13 @@ namespace polhode::report {
 /// The sweeps over fixed steps of the runs that are wanted and were not refused, by instance.
 std::vector<Sweep> fixed_sweeps(Facts const& facts, std::function<bool(results::Cell const&)> const& wanted);
 
+/// A defect or a drift that stays below this part of its scale is round-off.
+inline constexpr double round_off = results::OrderRules{}.round_off;
+
 /// The fixed sweeps of a problem that exist with the variant `unlocated` and without it, up to the same time.
 std::vector<Sweep> twins(Facts const& facts, std::string_view problem);
+/// Those of them that end steps on the events, or that do not (`unlocated`).
+std::vector<Sweep> part_of(std::vector<Sweep> sweeps, bool located);
 
 /// An error of a run: where it stands, and when it tells something.
 struct ErrorKind {
@@ -29,6 +34,8 @@ struct ErrorKind {
 inline constexpr ErrorKind attitude_at_end{"attitude error at the end [rad]",
                                            [](results::Record const& run) { return run.attitude_error_end; }};
 
+/// The largest of the successful runs' errors; none if no such run has one.
+std::optional<double> largest(Sweep const& sweep, ErrorKind const& kind);
 /// The order of a sweep at steps up to `h_most`.
 results::OrderResult order_of(Sweep const& sweep, double h_most = std::numeric_limits<double>::infinity(),
                               ErrorKind const& kind = attitude_at_end);

@@ -8,11 +8,6 @@
 namespace polhode::report {
 namespace {
 
-template <class... F>
-struct Overload : F... {
-  using F::operator()...;
-};
-
 bool is_word(char c) {
   return std::isalnum(static_cast<unsigned char>(c)) != 0;
 }

@@ -125,7 +125,7 @@ std::optional<Contest> asked(Facts const& facts, Need const& need) {
   return best;
 }
 
-Entry cost_of(Record const& run, Measure measure) {
+Entry cost_entry(Record const& run, Measure measure) {
   if (measure == Measure::time) return cpu_time(run.cpu_time_s);
   double const n = static_cast<double>(run.evaluations.value_or(0));
   return {fmt::format("{:.0f} evaluations", n), exact(n)};
@@ -144,9 +144,8 @@ std::string other_words(Cost const& cost, Cost const& best) {
 std::string rival_words(std::vector<Cost> const& ranked) {
   Cost const& best = ranked.front();
   bool const rival_wins = is_rival(best.run->of.integrator);
-  auto const other =
-      std::ranges::find_if(ranked, [&](Cost const& c) { return is_rival(c.run->of.integrator) != rival_wins; });
-  if (other == ranked.end()) return rival_wins ? "it is one; none of ours serves" : "none serves";
+  Cost const* other = first_of(ranked, !rival_wins);
+  if (!other) return rival_wins ? "it is one; none of ours serves" : "none serves";
   return rival_wins ? "it is one; best of ours " + other_words(*other, best) : other_words(*other, best);
 }
 
@@ -166,7 +165,6 @@ std::vector<Entry> row_of(Need const& need, std::optional<Contest> const& contes
                          fmt::format("{}: {}", contest ? contest->label : std::string(need.problem), need.rule)};
   if (!contest || contest->ran.size() < 2 || contest->ranked.empty()) {
     row.emplace_back(silence(contest));
-    while (row.size() < 9) row.emplace_back(absent);
     return row;
   }
   auto const& ranked = contest->ranked;
@@ -174,7 +172,7 @@ std::vector<Entry> row_of(Need const& need, std::optional<Contest> const& contes
   row.emplace_back(with_control(best));
   row.push_back(number(finite(best.run->attitude_error_max)));
   row.push_back(number(finite(best.run->norm_drift_max), 2));
-  row.push_back(cost_of(*best.run, contest->measure));
+  row.push_back(cost_entry(*best.run, contest->measure));
   row.push_back(at_target(best, contest->measure));
   row.emplace_back(ranked.size() > 1 ? other_words(ranked[1], best) : "nobody else serves");
   row.emplace_back(rival_words(ranked));
@@ -199,7 +197,10 @@ void add_needs(Document& document, Facts const& facts) {
                           {"at 1e-9 rad", true},
                           {"runner-up"},
                           {"best rival"}}};
-  for (Need const& need : needs) table.rows.push_back(row_of(need, asked(facts, need)));
+  for (Need const& need : needs) {
+    table.rows.push_back(row_of(need, asked(facts, need)));
+    table.rows.back().resize(table.columns.size(), Entry(absent));
+  }
   document.add(std::move(table));
   document.say(
       "The rows know these records alone. Costs are compared at 1e-9 rad where the run and the next coarser one of its "

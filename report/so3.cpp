@@ -18,11 +18,12 @@ using results::Record;
 constexpr std::array dashes{Dash::solid, Dash::dashed, Dash::dotted, Dash::dash_dot, Dash::solid};
 
 /// The law's choices besides the method.
+constexpr double own_delta = 0.1, own_rho = 0.8;  // the problem's
 double delta_of(Cell const& c) {
-  return parameter(c, "delta", 0.1);  // the problem's own
+  return parameter(c, "delta", own_delta);
 }
 double rho_of(Cell const& c) {
-  return parameter(c, "rho", 0.8);
+  return parameter(c, "rho", own_rho);
 }
 std::string gains_of(Cell const& c) {
   return has_word(c.variant, "set_p") ? "set_p" : "set_e";
@@ -48,7 +49,7 @@ std::vector<CaseRuns> timed_runs(Facts const& facts) {
   for (CaseRuns& cases : list) {
     Cell const& c = like(cases);
     cases.title = fmt::format("{}, delta = {}", gains_of(c), significant(delta_of(c)));
-    if (rho_of(c) != 0.8) cases.title += fmt::format(", rho = {}", significant(rho_of(c)));
+    if (rho_of(c) != own_rho) cases.title += fmt::format(", rho = {}", significant(rho_of(c)));
   }
   return list;
 }
@@ -145,8 +146,8 @@ void add_command(Document& document, std::vector<CaseRuns> const& sets) {
                           fmt::format("{}, {}", method_of(run->of), control_of(run->of)),
                           ours ? verdict_of(run, "t1_ours") : number(claimed(*run, "t1"), 4),
                           verdict_of(run, "q_a_5s")});
-    if (surface_of(c) != "far" || delta_of(c) != 0.1) continue;
-    if (rho_of(c) == 0.8) fed = claimed(*run, "t1");
+    if (surface_of(c) != "far" || delta_of(c) != own_delta) continue;
+    if (rho_of(c) == own_rho) fed = claimed(*run, "t1");
     if (rho_of(c) == 0) not_fed = claimed(*run, "t1");
   }
   if (table.rows.size() < 2) return;

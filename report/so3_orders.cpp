@@ -13,8 +13,6 @@ namespace {
 using results::Cell;
 using results::Record;
 
-/// A drift that stays below this is round-off.
-constexpr double round_off = 1e-12;
 constexpr ErrorKind orthogonality{.label = "|R^T R - 1|, largest",
                                   .of = [](Record const& run) { return run.norm_drift_max; },
                                   .scale = 1,
@@ -88,19 +86,13 @@ void add_orthogonality(Document& document, Facts const& facts) {
     auto const sweeps = several_steps(smooth(facts, d.formulation));
     figure.panels.push_back(error_panel(facts, std::string(d.title), sweeps, orthogonality));
     for (Sweep const& sweep : sweeps) {
-      double most = 0;
-      bool any = false;
-      for (Record const* run : sweep.runs) {
-        if (!is_ok(*run) || !finite(run->norm_drift_max)) continue;
-        any = true;
-        most = std::max(most, *run->norm_drift_max);
-      }
-      if (!any) continue;
-      if (most > round_off) {
+      auto const most = largest(sweep, orthogonality);
+      if (!most) continue;
+      if (*most > round_off) {
         drifting.push_back(drift_in_words(sweep));
       } else {
         kept.push_back(method_of(sweep.like()));
-        worst = std::max(worst, most);
+        worst = std::max(worst, *most);
       }
     }
   }
@@ -114,26 +106,22 @@ void add_orthogonality(Document& document, Facts const& facts) {
 
 /// The law jumps where a craft changes its surface.
 void add_switching(Document& document, Facts const& facts) {
-  auto sweeps = twins(facts, so3_cooperative().problem);
+  auto const sweeps = twins(facts, so3_cooperative().problem);
   if (sweeps.empty()) return;
   document.heading(3, "The change of surface, located and not");
-  auto const part = [&](bool located) {
-    auto list = sweeps;
-    std::erase_if(list, [&](Sweep const& s) { return has_word(s.like().variant, "unlocated") == located; });
-    return list;
-  };
-  std::string const with = orders_in_words(part(true)), without = orders_in_words(part(false));
+  auto const located = part_of(sweeps, true), not_located = part_of(sweeps, false);
+  std::string const with = orders_in_words(located), without = orders_in_words(not_located);
   document.say(
       fmt::format("The torque jumps where a craft comes within 20 deg of its command. Measured orders: with steps that "
                   "end there {}; with steps across {}.",
                   with.empty() ? "none" : with, without.empty() ? "none, the errors do not lie on a line" : without));
-  add_figure(document, {.name = "so3-switching",
-                        .caption = "Attitude error at the end against the step where craft change their surface: steps "
-                                   "that end on the change, and steps across.",
-                        .panels = {error_panel(facts, "change located", part(true)),
-                                   error_panel(facts, "not located", part(false))},
-                        .columns = 2,
-                        .same_y = true});
+  add_figure(document,
+             {.name = "so3-switching",
+              .caption = "Attitude error at the end against the step where craft change their surface: steps "
+                         "that end on the change, and steps across.",
+              .panels = {error_panel(facts, "change located", located), error_panel(facts, "not located", not_located)},
+              .columns = 2,
+              .same_y = true});
   document.add(error_table("so3-switching",
                            "Attitude error at the end [rad] by step, the measured order, and how many changes of "
                            "surface a run ended a step on.",

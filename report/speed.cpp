@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
 
 #include "report/sections.hpp"
 #include "report/text.hpp"
+#include "results/meta.hpp"
 
 namespace polhode::report {
 namespace {
@@ -16,18 +16,6 @@ using results::Record;
 
 std::string_view pace_of(bool adaptive) {
   return adaptive ? "adaptive" : "equal steps";
-}
-
-/// A time in the unit that suits it, with its interval; seconds in the CSV file.
-Entry seconds(double value, double low, double high) {
-  return cpu_time(results::CpuTime{value, low, high});
-}
-Entry at_the_target(Cost const& cost) {
-  return cost.interpolated ? seconds(cost.value, cost.low, cost.high) : Entry(absent);
-}
-
-std::string interval_of(Ratio const& ratio) {
-  return fmt::format("{} to {}", significant(ratio.low), significant(ratio.high));
 }
 
 std::string_view word_of(First first) {
@@ -54,7 +42,7 @@ Entry winner_of(Race const& race) {
   Cost const *winner = ours ? own : rival, *other = ours ? rival : own;
   std::string const name = fmt::format("{}: {}", ours ? "ours" : "rival", winner->run->of.integrator);
   if (!other) return name + (ours ? ", no rival arrives" : ", none of ours arrives");
-  Ratio const ratio = ratio_of(*other, *winner);
+  Estimate const ratio = quotient(*other, *winner);
   std::string const text = fmt::format("{}, {} ({})", name, significant(ratio.value), interval_of(ratio));
   return first == First::undecided ? text + ", undecided" : text;
 }
@@ -110,7 +98,7 @@ void push_side(std::vector<Entry>& row, Cost const* cost, bool adaptive) {
   row.emplace_back(cost ? control_of(cost->run->of) : absent);
   row.push_back(cost ? number(cost->run->attitude_error_max) : Entry(absent));
   row.push_back(cost ? cpu_time(cost->run->cpu_time_s) : Entry(absent));
-  if (!adaptive) row.push_back(cost ? at_the_target(*cost) : Entry(absent));
+  if (!adaptive) row.push_back(cost ? at_target(*cost, Measure::time) : Entry(absent));
 }
 
 void add_races(Document& document, std::vector<Race> const& races, bool adaptive) {
@@ -138,7 +126,7 @@ void add_races(Document& document, std::vector<Race> const& races, bool adaptive
     std::vector<Entry> row{race.instance->label, number(race.target), std::string(word_of(race.first()))};
     push_side(row, own, adaptive);
     push_side(row, rival, adaptive);
-    auto const ratio = own && rival ? std::optional(ratio_of(*rival, *own)) : std::nullopt;
+    auto const ratio = own && rival ? std::optional(quotient(*rival, *own)) : std::nullopt;
     row.push_back(ratio ? number(ratio->value) : Entry(absent));
     row.emplace_back(ratio ? interval_of(*ratio) : absent);
     table.rows.push_back(std::move(row));
@@ -160,7 +148,7 @@ void add_libraries(Document& document, std::vector<Race> const& races) {
   }
   for (Race const& race : races) {
     Cost const* own = race.own();
-    auto const time = [](Cost const* cost) { return cost ? seconds(cost->value, cost->low, cost->high) : absent; };
+    auto const time = [](Cost const* cost) { return cost ? cpu_time(*cost) : absent; };
     auto const who = [](Cost const* cost) { return cost ? Entry(cost->run->of.integrator) : Entry("none arrives"); };
     std::vector<Entry> row{race.instance->label, std::string(pace_of(race.adaptive)), number(race.target), who(own),
                            time(own)};
@@ -168,7 +156,7 @@ void add_libraries(Document& document, std::vector<Race> const& races) {
       Cost const* rival = race.rival(library);
       row.push_back(who(rival));
       row.push_back(time(rival));
-      row.push_back(own && rival ? number(ratio_of(*rival, *own).value) : Entry(absent));
+      row.push_back(own && rival ? number(quotient(*rival, *own).value) : Entry(absent));
     }
     table.rows.push_back(std::move(row));
   }
@@ -186,7 +174,7 @@ Entry arrival(std::vector<Sweep const*> const& sweeps, double target) {
     if (cost && (!best || cost->value < best->value)) best = cost;
     arrives = arrives || std::ranges::any_of(sweep->runs, [&](Record const* run) { return reaches(*run, target); });
   }
-  if (best) return seconds(best->value, best->low, best->high);
+  if (best) return cpu_time(*best);
   return {arrives ? "not timed" : "never", ""};
 }
 
@@ -254,12 +242,12 @@ void add_closed_forms(Document& document, Facts const& facts, std::vector<Race> 
     for (Record const* run : instance.runs) {
       if (!is_closed_form(facts, run->of.integrator) || !is_ok(*run) || !run->cpu_time_s) continue;
       auto const& time = *run->cpu_time_s;
-      if (!closed.run || time.median < closed.value) closed = {time.median, time.low, time.high, run};
+      if (!closed.run || time.median < closed.value) closed = {{time.median, time.low, time.high}, run};
     }
     if (!closed.run || !rival.run) continue;
     table.rows.push_back({instance.label, method_of(closed.run->of), number(closed.run->attitude_error_max),
-                          cpu_time(closed.run->cpu_time_s), rival.run->of.integrator, number(target),
-                          seconds(rival.value, rival.low, rival.high), number(ratio_of(rival, closed).value)});
+                          cpu_time(closed.run->cpu_time_s), rival.run->of.integrator, number(target), cpu_time(rival),
+                          number(quotient(rival, closed).value)});
   }
   if (!table.rows.empty()) document.add(std::move(table));
 }
@@ -280,9 +268,7 @@ void add_machine(Document& document, std::vector<results::Meta> const& metas) {
               .caption = "The machine, the compiler and the state of both when the times were taken.",
               .columns = {{"what"}, {"value"}}};
   for (auto const& [key, what] : facts) {
-    std::set<std::string> values;
-    for (results::Meta const& meta : metas)
-      if (auto const found = meta.find(key); found != meta.end()) values.insert(found->second);
+    auto const values = results::entries_of(metas, key);
     table.rows.push_back({what, values.empty() ? std::string("not told") : fmt::format("{}", fmt::join(values, "; "))});
   }
   document.add(std::move(table));

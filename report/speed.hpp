@@ -21,12 +21,6 @@ bool is_closed_form(Facts const& facts, std::string_view integrator);
 /// of the cheapest run that reaches it. None if no run with a time does.
 std::optional<Cost> time_to(Sweep const& sweep, double target);
 
-/// A quotient of two times, and how far the ends of their 95% intervals let it be off.
-struct Ratio {
-  double value = 0, low = 0, high = 0;
-};
-Ratio ratio_of(Cost const& over, Cost const& under);
-
 enum class First { ours, rival, undecided, nobody };
 
 /// One race: a problem, an error, one kind of control. All times are of whole solves [s].

@@ -12,39 +12,25 @@ namespace {
 using results::Benchmark;
 using results::Benchmarks;
 
-/// A time with its interval [s], of an iteration or of a part of it.
-struct Price {
-  double value = 0, low = 0, high = 0;
-};
 std::optional<double> counter_of(Benchmark const& benchmark, std::string const& name) {
   auto const found = benchmark.counters.find(name);
   return found == benchmark.counters.end() ? std::nullopt : finite(found->second);
 }
-/// Per step if it counts steps, else per iteration. The interval is that of the iteration's time.
-Price price_of(Benchmark const& benchmark) {
+/// The time [s] of a step if it counts steps, else of an iteration. The interval is that of the iteration's time.
+Estimate time_of(Benchmark const& benchmark) {
   auto const& t = benchmark.time;
   double const part = counter_of(benchmark, "per_step").value_or(t.median) / t.median;
   return {part * t.median, part * t.low, part * t.high};
 }
-std::optional<Price> price_of(Benchmarks const& all, std::string_view name) {
+std::optional<Estimate> time_of(Benchmarks const& all, std::string_view name) {
   Benchmark const* found = all.find(name);
-  return found ? std::optional(price_of(*found)) : std::nullopt;
+  return found ? std::optional(time_of(*found)) : std::nullopt;
 }
-Ratio quotient(Price const& over, Price const& under) {
-  return {over.value / under.value, over.low / under.high, over.high / under.low};
+Entry seconds(std::optional<Estimate> const& price) {
+  return price ? cpu_time(*price) : Entry(absent);
 }
-
-Entry seconds(std::optional<Price> const& price) {
-  return price ? cpu_time(results::CpuTime{price->value, price->low, price->high}) : Entry(absent);
-}
-Entry times(std::optional<Ratio> const& ratio) {
-  if (!ratio) return absent;
-  Entry entry = number(ratio->value);
-  entry.interval = fmt::format("{}, {}", significant(ratio->low), significant(ratio->high));
-  return entry;
-}
-std::string interval_of(Ratio const& ratio) {
-  return fmt::format("{} to {}", significant(ratio.low), significant(ratio.high));
+Entry times(std::optional<Estimate> const& ratio) {
+  return ratio ? number(*ratio) : Entry(absent);
 }
 
 std::vector<std::string> parts_of(std::string_view name) {
@@ -62,12 +48,12 @@ std::vector<std::string> parts_of(std::string_view name) {
 void add_steps(Document& document, Benchmarks const& all) {
   constexpr std::string_view problems[] = {"free_body", "pd_slew", "tether_capture"};
   using Key = std::tuple<bool, std::string, std::string>;  // a rival, integrator, formulation
-  std::map<Key, std::map<std::string, Price>> rows;
+  std::map<Key, std::map<std::string, Estimate>> rows;
   for (Benchmark const& benchmark : all.all) {
     auto const parts = parts_of(benchmark.name);
     if (parts.size() != 4 || parts[0] != "step" || std::ranges::find(problems, parts[1]) == std::end(problems))
       continue;
-    rows[{is_rival(parts[3]), parts[3], parts[2]}][parts[1]] = price_of(benchmark);
+    rows[{is_rival(parts[3]), parts[3], parts[2]}][parts[1]] = time_of(benchmark);
   }
   if (rows.empty()) return;
   Table table{.name = "speed-steps",
@@ -92,9 +78,9 @@ void add_steps(Document& document, Benchmarks const& all) {
 // ---- Many bodies ----------------------------------------------------------------------------------------------------
 
 /// The faster of the two loops over Odeint on that problem.
-std::optional<Price> odeint_loop(Benchmarks const& all, std::string const& problem) {
-  auto const plain = price_of(all, fmt::format("ensemble/{}/odeint_rk4", problem));
-  auto const wide = price_of(all, fmt::format("ensemble/{}/odeint_rk4_avx2", problem));
+std::optional<Estimate> odeint_loop(Benchmarks const& all, std::string const& problem) {
+  auto const plain = time_of(all, fmt::format("ensemble/{}/odeint_rk4", problem));
+  auto const wide = time_of(all, fmt::format("ensemble/{}/odeint_rk4_avx2", problem));
   return plain && wide ? (wide->value < plain->value ? wide : plain) : (plain ? plain : wide);
 }
 
@@ -112,11 +98,11 @@ void add_ensembles(Document& document, Benchmarks const& all) {
                           {"Odeint", true},
                           {"of the bound [%]", true},
                           {"lost", true}}};
-  auto const peak = price_of(all, "ensemble/fused_peak");
+  auto const peak = time_of(all, "ensemble/fused_peak");
   for (Benchmark const& benchmark : all.all) {
     auto const parts = parts_of(benchmark.name);
     if (parts.size() != 3 || parts[0] != "ensemble" || parts[2].starts_with("odeint")) continue;
-    Price const price = price_of(benchmark);
+    Estimate const price = time_of(benchmark);
     bool const rk4 = parts[2] == "rk4";
     auto const rival = parts[2].starts_with("rk4") && !benchmark.wall ? odeint_loop(all, parts[1]) : std::nullopt;
     // the bound counts the operations of this problem in double
@@ -132,7 +118,7 @@ void add_ensembles(Document& document, Benchmarks const& all) {
 }
 
 void add_networks(Document& document, Benchmarks const& all) {
-  std::map<std::string, std::map<int, Price>> rows;
+  std::map<std::string, std::map<int, Estimate>> rows;
   std::map<int, bool> sizes;
   for (Benchmark const& benchmark : all.all) {
     auto const parts = parts_of(benchmark.name);
@@ -140,7 +126,7 @@ void add_networks(Document& document, Benchmarks const& all) {
         parts[4].find_first_not_of("0123456789") != std::string::npos)
       continue;
     int const n = std::stoi(parts[4]);
-    rows[fmt::format("{} ({})", parts[3], parts[2])][n] = price_of(benchmark);
+    rows[fmt::format("{} ({})", parts[3], parts[2])][n] = time_of(benchmark);
     sizes[n] = true;
   }
   if (rows.empty()) return;
@@ -193,9 +179,9 @@ void add_ratios(Document& document, Benchmarks const& all) {
                   "two threads gain is told by the long runs; short ones also pay for starting the second thread.",
               .columns = {{"first / second"}, {"ratio", true}, {"95%"}}};
   for (Pair const& pair : pairs) {
-    auto const over = price_of(all, pair.over), under = price_of(all, pair.under);
+    auto const over = time_of(all, pair.over), under = time_of(all, pair.under);
     if (!over || !under) continue;
-    Ratio const ratio = quotient(*over, *under);
+    Estimate const ratio = quotient(*over, *under);
     table.rows.push_back({std::string(pair.what), times(ratio), interval_of(ratio)});
   }
   if (!table.rows.empty()) document.add(std::move(table));
@@ -207,7 +193,7 @@ void add_figures(Document& document, Benchmarks const& all) {
                   "Single figures. The periods of the sampled loop (its torque saturates; RK4, 5 steps) were "
                   "timed one by one, the clock included.",
               .columns = {{"what"}, {"value", true}}};
-  auto const push = [&](std::string const& what, std::optional<Price> const& price) {
+  auto const push = [&](std::string const& what, std::optional<Estimate> const& price) {
     if (price) table.rows.push_back({what, seconds(price)});
   };
   if (Benchmark const* worst = all.find("worst/limited_slew_sampled/rk4/period")) {
@@ -216,15 +202,15 @@ void add_figures(Document& document, Benchmarks const& all) {
       if (auto const value = counter_of(*worst, name))
         table.rows.push_back({fmt::format("a period of sampled control: {}", what), {duration(*value), exact(*value)}});
   }
-  push("closed form of the free body: a value", price_of(all, "exact/free_body/evaluation"));
-  push("closed form of the free body: before the first", price_of(all, "exact/free_body/setup"));
+  push("closed form of the free body: a value", time_of(all, "exact/free_body/evaluation"));
+  push("closed form of the free body: before the first", time_of(all, "exact/free_body/setup"));
   if (Benchmark const* certify = all.find("certify/free_body")) {
     auto const bar = counter_of(*certify, "bar");
     push(bar ? fmt::format("a certified reference of the free body, 50 s, to {} rad", significant(*bar, 2))
              : std::string("a certified reference of the free body, 50 s"),
-         price_of(*certify));
+         time_of(*certify));
   }
-  push("starting a second thread and waiting for it, wall time", price_of(all, "ensemble/second_thread"));
+  push("starting a second thread and waiting for it, wall time", time_of(all, "ensemble/second_thread"));
   if (Benchmark const* peak = all.find("ensemble/fused_peak"))
     if (auto const flops = counter_of(*peak, "flops"))
       table.rows.push_back({"peak of fused operations on one core [GFLOP/s]", number(*flops / 1e9)});

@@ -56,13 +56,8 @@ std::optional<Cost> time_to(Sweep const& sweep, double target) {
   return cheapest(alone, target, Measure::time);
 }
 
-Ratio ratio_of(Cost const& over, Cost const& under) {
-  return {over.value / under.value, over.low / under.high, over.high / under.low};
-}
-
 Cost const* Race::own() const {
-  auto const found = std::ranges::find_if(costs, [](Cost const& cost) { return !is_rival(cost.run->of.integrator); });
-  return found == costs.end() ? nullptr : &*found;
+  return first_of(costs, false);
 }
 
 Cost const* Race::rival(std::string_view library) const {
@@ -77,7 +72,7 @@ First Race::first() const {
   Cost const *ours = own(), *theirs = rival();
   if (!ours && !theirs) return First::nobody;
   if (!ours || !theirs) return ours ? First::ours : First::rival;
-  Ratio const ratio = ratio_of(*theirs, *ours);
+  Estimate const ratio = quotient(*theirs, *ours);
   return ratio.low > 1 ? First::ours : ratio.high < 1 ? First::rival : First::undecided;
 }
 

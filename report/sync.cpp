@@ -71,14 +71,6 @@ void add_histories(Document& document, Facts const& facts) {
                         .panels = {panel_of(facts, trapped, "disagreement", "largest |q_i - q_j|", false)}});
 }
 
-/// The column's last value; NaN if the run left none.
-double last_of(Facts const& facts, Record const& run, std::string_view column) {
-  results::Series const* series = facts.series_of(run, "history");
-  auto const at = series ? column_of(*series, column) : std::nullopt;
-  if (!at || series->rows.empty() || series->rows.back().size() <= *at) return NAN;
-  return series->rows.back()[*at];
-}
-
 /// The data are not of length one, and so the scalar parts cannot agree.
 void say_norms(Document& document, Facts const& facts) {
   std::vector<std::string> raw, normalised;
@@ -106,14 +98,14 @@ void say_trap(Document& document, Facts const& facts) {
     if (cases.title != "normalized trap") continue;
     Record const *seven = cases.find("protocol7"), *thirteen = cases.find("protocol13");
     if (!seven || !thirteen) continue;
-    double const apart = last_of(facts, *seven, "disagreement"), together = last_of(facts, *thirteen, "disagreement");
-    if (!std::isfinite(apart) || !std::isfinite(together)) continue;
+    auto const apart = last_of(facts, *seven, "disagreement"), together = last_of(facts, *thirteen, "disagreement");
+    if (!apart || !together) continue;
     // |p - q|^2 = 2 - 2 p.q, and the angle between the attitudes is 2 acos |p.q|
-    double const product = std::min(1.0, std::fabs(1 - apart * apart / 2));
+    double const product = std::min(1.0, std::fabs(1 - *apart * *apart / 2));
     document.say(fmt::format(
         "From the trap (7) ends with quaternions {} apart, attitudes that differ by {} deg: an equilibrium, though an "
         "unstable one. (13) ends {} apart{}.",
-        significant(apart, 6), significant(degrees(2 * std::acos(product)), 4), significant(together),
+        significant(*apart, 6), significant(degrees(2 * std::acos(product)), 4), significant(*together),
         thirteen->events_located.value_or(0) > 0
             ? fmt::format(" after {}", counted(std::size_t(*thirteen->events_located), "located change of sign",
                                                "located changes of sign"))
@@ -213,7 +205,6 @@ void add_networks(Document& document, Facts const& facts) {
   std::ranges::stable_sort(runs, {}, [](Record const* run) {
     return std::tuple(run->of.set.at("n").front(), run->of.formulation, run->of.integrator);
   });
-  auto const count = [](std::optional<std::int64_t> n) { return n ? Entry(std::to_string(*n)) : Entry(absent); };
   for (Record const* run : runs) {
     bool const both = run->steps && run->evaluations && *run->steps > 0;
     table.rows.push_back(

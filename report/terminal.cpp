@@ -6,11 +6,6 @@
 namespace polhode::report {
 namespace {
 
-template <class... F>
-struct Overload : F... {
-  using F::operator()...;
-};
-
 std::string plain(Text const& text) {
   std::string out;
   for (Span const& span : text.spans) out += one_line(span.text);

@@ -31,6 +31,25 @@ Entry number(std::optional<double> value, int digits) {
   return {significant(*value, digits), exact(*value)};
 }
 
+Entry count(std::optional<std::int64_t> n) {
+  if (!n) return absent;
+  return std::to_string(*n);
+}
+
+Estimate quotient(Estimate const& over, Estimate const& under) {
+  return {over.value / under.value, over.low / under.high, over.high / under.low};
+}
+
+Entry number(Estimate const& estimate) {
+  Entry entry = number(estimate.value);
+  entry.interval = fmt::format("{}, {}", significant(estimate.low), significant(estimate.high));
+  return entry;
+}
+
+std::string interval_of(Estimate const& estimate) {
+  return fmt::format("{} to {}", significant(estimate.low), significant(estimate.high));
+}
+
 namespace {
 
 struct Unit {
@@ -53,13 +72,17 @@ std::string duration(double seconds, int digits) {
   return significant(seconds * unit.per_second, digits) + " " + unit.name;
 }
 
+Entry cpu_time(Estimate const& seconds) {
+  Entry entry(duration(seconds.value), exact(seconds.value));
+  Unit const unit = unit_of(seconds.value);
+  entry.interval =
+      fmt::format("{}, {}", significant(seconds.low * unit.per_second), significant(seconds.high * unit.per_second));
+  return entry;
+}
+
 Entry cpu_time(std::optional<results::CpuTime> const& time) {
   if (!time) return absent;
-  Entry entry(duration(time->median), exact(time->median));
-  Unit const unit = unit_of(time->median);
-  entry.interval =
-      fmt::format("{}, {}", significant(time->low * unit.per_second), significant(time->high * unit.per_second));
-  return entry;
+  return cpu_time(Estimate{time->median, time->low, time->high});
 }
 
 double degrees(double radians) {

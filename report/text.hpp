@@ -19,9 +19,24 @@ std::string significant(double value, int digits = 3);
 std::string exact(double value);
 /// A table's entry: rounded to read, exact in the CSV file.
 Entry number(std::optional<double> value, int digits = 3);
-/// A CPU time in the unit that suits it, e.g. "12.3 us".
+/// The same of a count, in full.
+Entry count(std::optional<std::int64_t> n);
+
+/// A number and the ends of its 95% interval: all three alike where nothing varies.
+struct Estimate {
+  double value = 0, low = 0, high = 0;
+};
+/// over / under, and how far the ends of the two intervals let it be off. All are positive.
+Estimate quotient(Estimate const& over, Estimate const& under);
+/// With its interval.
+Entry number(Estimate const& estimate);
+/// "1.02 to 1.05".
+std::string interval_of(Estimate const& estimate);
+
+/// A CPU time in the unit that suits it, e.g. "12.3 µs".
 std::string duration(double seconds, int digits = 3);
 /// The same with its interval; seconds in the CSV file.
+Entry cpu_time(Estimate const& seconds);
 Entry cpu_time(std::optional<results::CpuTime> const& time);
 
 double degrees(double radians);

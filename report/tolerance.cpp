@@ -223,7 +223,6 @@ void add_table(Document& document, Study const& study, std::string const& method
     row.push_back(number(distance(rates, study.limit), 2));
     table.rows.push_back(std::move(row));
   };
-  auto const count = [](std::optional<std::int64_t> n) { return n ? Entry(std::to_string(*n)) : Entry(absent); };
   line("printed", absent, absent, study.printed);
   for (auto const& [name, tries] : study.methods) {
     if (name != method) continue;

@@ -5,7 +5,6 @@
 #include <map>
 
 #include "report/sections.hpp"
-#include "report/speed.hpp"
 #include "report/text.hpp"
 
 namespace polhode::report {
@@ -14,8 +13,6 @@ namespace {
 using results::Cell;
 using results::Record;
 
-/// An attitude error that so few roundings make [rad] is not shown, and below the larger one the picture is shaded.
-constexpr double machine_precision = 1e-16, rounding = 1e-13;
 /// More lines than this in one picture cannot be told apart: it is split by formulation, then by policy.
 constexpr std::size_t most_lines = 14;
 
@@ -47,10 +44,9 @@ std::map<std::string, std::vector<Sweep>> parts_of(Instance const& instance) {
 }
 
 Panel panel_of(Facts const& facts, std::vector<Sweep> const& sweeps, Measure measure) {
-  bool const timed = measure == Measure::time;
-  Panel panel{.x = {timed ? "CPU time [s]" : "evaluations", true},
-              .y = {"attitude error, max [rad]", true, machine_precision},
-              .rounding = rounding};
+  Panel panel{.x = {measure == Measure::time ? "CPU time [s]" : "evaluations", true},
+              .y = {"attitude error, max [rad]", true, least_error},
+              .rounding = rounding_rules};
   bool const mixed = std::ranges::any_of(
       sweeps, [&](Sweep const& sweep) { return sweep.like().formulation != sweeps.front().like().formulation; });
   for (Sweep const& sweep : sweeps) {
@@ -58,11 +54,8 @@ Panel panel_of(Facts const& facts, std::vector<Sweep> const& sweeps, Measure mea
     Curve curve{line_label(c, mixed), facts.style_of(c)};
     for (Record const* run : sweep.runs) {
       auto const error = finite(run->attitude_error_max);
-      if (!is_ok(*run) || !error || *error <= 0) continue;
-      std::optional<double> cost;
-      if (timed && run->cpu_time_s) cost = run->cpu_time_s->median;
-      if (!timed && run->evaluations) cost = static_cast<double>(*run->evaluations);
-      if (finite(cost) && *cost > 0) curve.points.push_back({*cost, *error, below_bar(*run)});
+      auto const cost = cost_of(*run, measure);
+      if (is_ok(*run) && error && *error > 0 && cost) curve.points.push_back({cost->value, *error, below_bar(*run)});
     }
     if (!curve.points.empty()) panel.curves.push_back(std::move(curve));
   }
@@ -71,6 +64,7 @@ Panel panel_of(Facts const& facts, std::vector<Sweep> const& sweeps, Measure mea
 
 std::size_t add_figures(Document& document, Facts const& facts, Instance const& instance, std::size_t n) {
   for (auto const& [part, sweeps] : parts_of(instance)) {
+    if (sweeps.size() == 1 && sweeps.front().runs.size() == 1) continue;  // a lone point: the table has it
     Figure figure{.name = fmt::format("work-precision-{}", n + 1), .columns = 2};
     std::string missing;
     for (Measure const measure : {Measure::time, Measure::evaluations}) {
@@ -99,12 +93,8 @@ std::size_t add_figures(Document& document, Facts const& facts, Instance const& 
 
 /// With where it lies, if either cost varies.
 Entry times_the_best(Cost const& cost, Cost const& best) {
-  Ratio const ratio = ratio_of(cost, best);
-  Entry entry = number(ratio.value);
-  if (cost.run != best.run && ratio.low < ratio.high) {
-    entry.interval = fmt::format("{}, {}", significant(ratio.low), significant(ratio.high));
-  }
-  return entry;
+  Estimate const ratio = quotient(cost, best);
+  return cost.run != best.run && ratio.low < ratio.high ? number(ratio) : number(ratio.value);
 }
 
 Table cheapest_table(Instance const& instance, Measure measure, std::size_t n) {
@@ -139,12 +129,9 @@ Table cheapest_table(Instance const& instance, Measure measure, std::size_t n) {
     for (std::size_t i = 0; i < costs.size(); ++i) {
       Cost const& cost = costs[i];
       Record const& run = *cost.run;
-      std::optional<double> evaluations;
-      if (run.evaluations) evaluations = static_cast<double>(*run.evaluations);
       table.rows.push_back({number(target), std::to_string(i + 1), run.of.integrator, run.of.formulation, run.of.policy,
                             control_of(run.of), number(run.attitude_error_max),
-                            number(arcseconds(*run.attitude_error_max)),
-                            evaluations ? Entry(std::to_string(*run.evaluations)) : Entry(absent),
+                            number(arcseconds(*run.attitude_error_max)), count(run.evaluations),
                             cpu_time(run.cpu_time_s), run.cpu_time_s ? number(run.cpu_time_s->low) : Entry(absent),
                             run.cpu_time_s ? number(run.cpu_time_s->high) : Entry(absent), at_target(cost, measure),
                             times_the_best(cost, costs.front())});

@@ -39,6 +39,35 @@ TEST(Facts, EveryIntegratorHasItsOwnLook) {
   EXPECT_EQ(looks.size(), 16U);
 }
 
+TEST(Facts, WhoRanOnMostProblemsHasAColourOfItsOwn) {
+  Contents c;
+  for (int i = 0; i < 20; ++i) {
+    bool const everywhere = i >= 17;
+    for (auto const* problem : {"free_body", "heavy_top"}) {
+      if (everywhere || problem[0] == 'f')
+        c.records.push_back(made(problem, "", {fmt::format("m{:02}", i), 2, 1, 2, 0}, 0.1));
+    }
+  }
+  c.records.push_back(made("heavy_top", "", {"ida", 2, 1, 2, 0}, 0.1));
+  Facts const facts(c);
+  auto const index = [&](std::string const& name) {
+    results::Cell cell;
+    cell.integrator = name;
+    return facts.style_of(cell).index;
+  };
+  EXPECT_EQ(index("m17"), 0);
+  EXPECT_EQ(index("m19"), 2);
+  EXPECT_EQ(index("m00"), 3);
+  EXPECT_EQ(index("ida"), 20);
+}
+
+TEST(Facts, AParameterOfOneNumberNeedsNoBrackets) {
+  Contents c;
+  c.records.push_back(made("quaternion_sync", "protocol7", {"m", 2, 1, 2, 0}, 0.1));
+  c.records[0].of.set = {{"n", {100}}, {"omega0", {1, 2, 3}}};
+  EXPECT_EQ(Facts(c).instances.at(0).label, "quaternion_sync protocol7, n = 100, omega0 = (1 2 3), 50 s");
+}
+
 TEST(Facts, HeadlinesComeFirst) {
   Contents c;
   for (auto const* name : {"a_problem", "pd_slew", "free_body"}) {

@@ -2,6 +2,7 @@
 // a record escapes its place in Markdown, HTML, CSV or gnuplot's script.
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "report/render.hpp"
 #include "report/text.hpp"
@@ -85,11 +86,13 @@ TEST(Report, FullSetPrintsWhatIsRecorded) {
   Contents const c = full();
   std::string const text = markdown_of(c, folder.path);
   expect_sound(folder.path);
+  EXPECT_TRUE(
+      contains(text,
+               "Without projection gauss1, gauss2, gauss3 and gauss4 keep |q.q - 1| within 3e-15; the others "
+               "drift, worst gauss2_sweeps1 (7e-6): the visible violation of Xu et al. (2017) means too few sweeps."));
   EXPECT_TRUE(contains(text,
-                       "Without projection gauss1, gauss2, gauss3 and gauss4 keep |q.q - 1| within 3e-15; the others "
-                       "drift, worst gauss2_sweeps1 (7e-6): the paper's visible violation means too few sweeps."));
-  EXPECT_TRUE(contains(text,
-                       "At h = 0.1 s gauss2 points within 5e-10 rad (0.000103 arcsec); projection cures the norm, not "
+                       "On free_body, 50 s, at h = 0.1 s gauss2 points within 5e-10 rad (0.000103 arcsec); projection "
+                       "cures the norm, not "
                        "the attitude: gauss2_sweeps1 is off by 0.0002 rad without it and 0.0002 rad with it."));
   EXPECT_TRUE(contains(text, "| gauss2_sweeps1 | quaternion | 7e-6 | 2.2e-16 |"));
   EXPECT_TRUE(contains(text, "| rk4 | none | delivered | 8e-11 | 8e-11 | 8e-11 | 8e-11 | 8e-11 |"));
@@ -117,6 +120,18 @@ TEST(Report, FullSetPrintsWhatIsRecorded) {
     EXPECT_TRUE(found) << line;
   }
   EXPECT_GE(rows, 10);
+}
+
+TEST(Report, WhoKeepsTheNormByAccuracyAloneIsToldApart) {
+  Folder const folder;
+  Contents c;
+  for (auto const* name : {"gauss2", "rkf78"})
+    c.records.push_back(made("free_body", "", {name, 4, 5e-6, 12, 2e-15}, 0.1));
+  c.catalogue["gauss2"].preserves = {"norm"};
+  EXPECT_TRUE(contains(markdown_of(c, folder.path), "Without projection gauss2 and rkf78 keep |q.q - 1| within 2e-15."))
+      << "the catalogue does not know rkf78";
+  c.catalogue["rkf78"].preserves = {};
+  EXPECT_TRUE(contains(markdown_of(c, folder.path), "within 2e-15 (rkf78 by accuracy, not by construction)."));
 }
 
 TEST(Report, ARivalThatWinsIsNamed) {
@@ -179,6 +194,24 @@ TEST(Report, FiguresAreWellFormed) {
   EXPECT_GE(pictures, 8U);
 }
 
+TEST(Report, ThePageHasItsOwnColoursAndEveryIdOnce) {
+  if (!have_gnuplot()) GTEST_SKIP() << "gnuplot is not on the PATH";
+  Folder const folder;
+  markdown_of(full(), folder.path);
+  std::string const page = slurp(folder.path / "report.html");
+  std::string const body = page.substr(page.find("<main>"), page.find("</main>") - page.find("<main>"));
+  EXPECT_TRUE(contains(body, "var(--curve-0)"));
+  // letters and the first curve, as gnuplot writes them
+  for (auto const* fixed : {"rgb(51,51,51)", "rgb( 86, 180, 233)", "\"black\""})
+    EXPECT_FALSE(contains(body, fixed)) << fixed << " is lost in the dark";
+  std::set<std::string> ids;
+  for (auto at = body.find(" id="); at != std::string::npos; at = body.find(" id=", at + 1)) {
+    std::string const id = body.substr(at + 5, body.find(body[at + 4], at + 5) - at - 5);
+    EXPECT_TRUE(ids.insert(id).second) << id;
+  }
+  EXPECT_TRUE(ids.contains("table-drift-1") && ids.contains("figure-drift-1"));
+}
+
 TEST(Report, WithoutGnuplotTheReportStillComes) {
   Folder const folder;
   std::string const before = std::getenv("PATH") != nullptr ? std::getenv("PATH") : "";
@@ -229,6 +262,19 @@ TEST(Report, ApostrophesInARow) {
     for (auto at = figure.svg->find(shown); at != std::string::npos; at = figure.svg->find(shown, at + 1)) ++found;
     EXPECT_GE(found, 4U) << label;
   }
+}
+
+TEST(Report, ALegendLongerThanItsPanelIsWhole) {
+  if (!have_gnuplot()) GTEST_SKIP() << "gnuplot is not on the PATH";
+  Folder const folder;
+  fs::create_directories(folder.path);
+  Figure figure{.name = "long"};
+  figure.panels.push_back({{"x"}, {"y"}});
+  for (int i = 0; i < 30; ++i)
+    figure.panels[0].curves.push_back({fmt::format("curve{:02}", i), {.index = i}, {{1, 2}, {2, 3}}});
+  draw(figure, folder.path);
+  ASSERT_TRUE(figure.svg) << figure.why_not;
+  for (int i = 0; i < 30; ++i) EXPECT_TRUE(contains(*figure.svg, fmt::format(">curve{:02}</t", i))) << i;
 }
 
 TEST(Report, AnUnwritableFolderIsAnError) {

@@ -86,7 +86,7 @@ TEST(SpeedRace, TheFirstIsTheFirstOfItsKindOfControl) {
   EXPECT_EQ(equal.rival()->run->of.integrator, "odeint_rk4");
   EXPECT_EQ(equal.rival("GSL"), nullptr) << "it runs adaptively alone here";
   EXPECT_EQ(equal.first(), First::ours);
-  Ratio const ratio = ratio_of(*equal.rival(), *equal.own());
+  Estimate const ratio = quotient(*equal.rival(), *equal.own());
   EXPECT_NEAR(ratio.value, 2, 1e-12);
   EXPECT_NEAR(ratio.low, 2 * 0.9 / 1.1, 1e-12);
   EXPECT_NEAR(ratio.high, 2 * 1.1 / 0.9, 1e-12);
