@@ -154,7 +154,7 @@ const drift = {
 
 const profile = {
   id: 'x-profiles', title: 'Performance profiles',
-  about: 'The share of problems and accuracies (1e-6, 1e-9 and 1e-12 rad, where anybody gets there) that a method ' +
+  about: 'The share of problems and accuracies (1e-6, 1e-9 and 1e-12 rad, where two methods or more get there) that a method ' +
     'reaches at no more than τ times the cost of the best (Dolan and Moré 2002). Other libraries are dashed. Where it was not run, or failed, it did not get there.',
   setup(panel) {
     panel.measure = panel.choice('Cost');

@@ -1,11 +1,6 @@
 // Pictures: colours, axes with their decades, what a panel has around its picture. Plotly draws.
 import {csvOf} from './records.js';
 
-/** Colours by a method's place, as in the still figures; on dark ground lighter ones. Symbols tell what colours cannot. */
-const LIGHT = ['#56B4E9', '#E69F00', '#009E73', '#0072B2', '#000000', '#8C510A', '#CC79A7', '#882255', '#999933',
-  '#332288', '#CC3311', '#117733', '#D55E00', '#44AA99', '#AA4499', '#6B6BD6'];
-const DARK = ['#56B4E9', '#E69F00', '#1FC797', '#4A9FE0', '#F2F2F2', '#C98A45', '#E39BC3', '#D0628F', '#C2C24D',
-  '#8F86E8', '#FF6B4D', '#4CB86A', '#FF8A3D', '#5FD0BE', '#D47AD4', '#9C9CF5'];
 const SYMBOLS = ['circle', 'square', 'triangle-up', 'triangle-down', 'diamond', 'pentagon', 'x', 'cross', 'star'];
 const DASHES = ['solid', 'dash', 'dot', 'dashdot'];
 /** Paths of the symbols in a legend, in a box from -5 to 5. */
@@ -18,10 +13,12 @@ const SHAPES = {
   star: 'M0-4.8L1.2-1.5L4.6-1.5L1.9.6L2.9 4L0 2L-2.9 4L-1.9.6L-4.6-1.5L-1.2-1.5z',
 };
 
-const darkQuery = window.matchMedia('(prefers-color-scheme: dark)');
-export function onTheme(change) { darkQuery.addEventListener('change', change); }
+export function onTheme(change) { window.matchMedia('(prefers-color-scheme: dark)').addEventListener('change', change); }
 
 export function variable(name) { return getComputedStyle(document.documentElement).getPropertyValue(name).trim(); }
+
+/** The colour of a method's place, as in the still figures. Symbols tell what colours cannot. */
+function colourAt(place) { return variable(`--curve-${place % Number(variable('--curves'))}`); }
 
 /** Text for Plotly, which reads a little HTML. */
 export function plain(text) {
@@ -32,18 +29,17 @@ export function plain(text) {
  * figures), open for rivals, dashed if adaptive, dotted by policy. */
 export function lookOf(records, run) {
   const {look, rival} = records.integrator(run);
-  const colours = darkQuery.matches ? DARK : LIGHT;
   const others = records.words('formulation').filter((word) => word !== 'quaternion').sort();
   const shift = 1 + others.indexOf(records.text('formulation', run));  // 0 for quaternions
   const adaptive = records.value('h', run) === null, policy = records.text('policy', run) !== 'none';
-  return {colour: colours[look % colours.length], symbol: SYMBOLS[(look + shift) % SYMBOLS.length], open: rival,
+  return {colour: colourAt(look), symbol: SYMBOLS[(look + shift) % SYMBOLS.length], open: rival,
     dash: DASHES[(adaptive ? 1 : 0) + (policy ? 2 : 0)]};
 }
 
 /** A look for the k-th of curves that are not told apart by their methods. */
 export function lookAt(k) {
-  const colours = darkQuery.matches ? DARK : LIGHT, first = [3, 12, 2, 6, 0, 1, 15, 10];
-  return {colour: colours[first[k % 8]], symbol: SYMBOLS[k % SYMBOLS.length], open: false,
+  const first = [3, 12, 2, 6, 0, 1, 15, 10];
+  return {colour: colourAt(first[k % 8]), symbol: SYMBOLS[k % SYMBOLS.length], open: false,
     dash: DASHES[Math.floor(k / 8) % 4]};
 }
 
@@ -97,7 +93,7 @@ const CONFIG = {responsive: true, displaylogo: false, plotlyServerURL: '', showS
  * Draws curves into a panel: {name, run, xs, ys, texts, runs, grey?, mode?, look?}; a legend whose entries switch, the
  * arrow keys move from point to point, and a point's record is read out. axes: {x: {title, log}, y: ...}.
  */
-export function drawCurves(panel, records, curves, axes, extras = []) {
+export function drawCurves(panel, records, curves, axes) {
   const {plot} = panel;
   const traces = curves.map((curve) => {
     const look = curve.look || lookOf(records, curve.run);
@@ -114,14 +110,13 @@ export function drawCurves(panel, records, curves, axes, extras = []) {
   });
   panel.curves = curves;
   panel.empty(curves.length === 0);
-  drawn(plot, [...traces, ...extras], layout);
+  drawn(plot, traces, layout);
   followZoom(plot);
   readPoints(panel, records);
   legendOf(panel, records, traces);
 }
 
 function drawn(plot, traces, layout) {
-  plot.classList.toggle('none', traces.length === 0);
   window.Plotly.react(plot, traces, layout, CONFIG);
 }
 
@@ -214,7 +209,7 @@ export function curvesCsv(panel, records, x, y) {
 }
 
 /** True if the browser draws in three dimensions. */
-export function hasWebGl() {
+function hasWebGl() {
   try {
     const canvas = document.createElement('canvas');
     return Boolean(window.WebGLRenderingContext && (canvas.getContext('webgl2') || canvas.getContext('webgl')));
