@@ -5,6 +5,9 @@
 #include <cmath>
 
 #include "integrators/high_order.hpp"
+#include "integrators/ode45.hpp"
+#include "integrators/taylor.hpp"
+#include "problems/free_body.hpp"
 #include "problems/pd_slew.hpp"
 #include "problems/quaternion_sync.hpp"
 #include "tests/quad_runs.hpp"
@@ -209,6 +212,40 @@ TEST(DenseOutputOfManyBodies, IsAsAccurateAsTheSteps) {
   stepper.interpolate((from + t) / 2, inside);
   Dop853{}.bind(swarm, Adaptive{1e-13, 1e-15}, NormPolicy::none).advance(exact, 0, (from + t) / 2);
   EXPECT_LT(distance<double>(inside, exact), 1e-8);
+}
+
+// ---- Methods with steps that outputs do not shorten -----------------------------------------------------------------
+
+/// The greatest defect at outputs every 0.05 s of methods whose steps they do not shorten.
+template <class Method, class P>
+double defect_at_outputs(P const& problem, NormPolicy policy) {
+  auto stepper = Method{}.bind(problem, Adaptive{1e-4, 1e-6}, policy);
+  if constexpr (requires { stepper.set_horizon(0, 5); }) stepper.set_horizon(0, 5);
+  auto x = problem.initial();
+  double worst = 0;
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_EQ(stepper.advance(x, 0.05 * i, 0.05 * (i + 1)), Status::ok);
+    worst = std::max(worst, FlatQuaternion<double>::defect(x.first));
+  }
+  EXPECT_LT(stepper.work().steps, 50);
+  if (policy == NormPolicy::project) {
+    EXPECT_EQ(stepper.projections().count, stepper.work().steps) << "outputs are no steps";
+  }
+  return worst;
+}
+TEST(OutputsWithinSteps, AreProjectedAsTheirEndsAre) {
+  WithSeries const problem(slew<double>(), slew<Jet<double, 20>>());
+  EXPECT_GT(defect_at_outputs<Dopri5Ode45>(problem, NormPolicy::none), 1e-10) << "the test can tell";
+  EXPECT_LT(defect_at_outputs<Dopri5Ode45>(problem, NormPolicy::project), 1e-15);
+  EXPECT_GT(defect_at_outputs<Taylor>(problem, NormPolicy::none), 1e-10);
+  EXPECT_LT(defect_at_outputs<Taylor>(problem, NormPolicy::project), 1e-15);
+}
+TEST(OutputsWithinSteps, OfTheCustomaryStepControlGoOnBehindItsHorizon) {
+  auto const problem = FreeBody(Choice{}).field<double, FlatQuaternion, true>();
+  auto stepper = Dopri5Ode45{}.bind(problem, Adaptive{1e-4, 1e-6}, NormPolicy::none);
+  auto x = problem.initial();
+  EXPECT_EQ(stepper.advance(x, 0, 1), Status::ok);
+  EXPECT_EQ(stepper.advance(x, 1, 2), Status::ok) << "nobody said that the first second was not all";
 }
 
 }  // namespace
