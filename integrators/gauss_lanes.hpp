@@ -30,6 +30,11 @@ class LawsonRun {
 
  public:
   void restart() { memory_.restart(); }
+  Work work() const {
+    Work work = work_;
+    work.iterations = memory_.iterations;
+    return work;
+  }
   Projections projections() const { return projections_; }
 
  protected:
@@ -59,6 +64,7 @@ class LawsonRun {
   NormPolicy policy_;
   Registers registers_ = widest_registers();
   LawsonMemory<s> memory_;
+  Work work_;
   Projections projections_;
 };
 }  // namespace detail
@@ -84,22 +90,16 @@ class LawsonFixed : public detail::LawsonRun<s, P> {
     run(x, t, t_end - t, 1);
     return health_of(x);
   }
-  Work work() const {
-    Work work;
-    work.steps = steps_;
-    work.iterations = memory_.iterations;
-    return work;
-  }
 
  private:
-  using Base::damps, Base::memory_, Base::problem_, Base::registers_;
+  using Base::damps, Base::memory_, Base::problem_, Base::registers_, Base::work_;
 
   Status health_of(X const& x) const {
     if (!all_finite(x)) return Status::diverged;
     return memory_.unconverged ? Status::nonlinear_fail : Status::ok;
   }
   void run(X& x, double t, double h, std::int64_t n) {
-    steps_ += n;
+    work_.steps += n;
     if constexpr (Base::chooses) {
       if (registers_ == Registers::avx512) return run_avx512(x, t, h, n);
       if (registers_ == Registers::avx2) return run_avx2(x, t, h, n);
@@ -130,7 +130,6 @@ class LawsonFixed : public detail::LawsonRun<s, P> {
 
   double h_;
   SweepRule rule_;
-  std::int64_t steps_ = 0;
 };
 
 /// Steps of its own choice.
@@ -162,14 +161,9 @@ class LawsonControlled : public detail::LawsonRun<s, P> {
     restart();
     size_.forget();
   }
-  Work work() const {
-    Work work = work_;
-    work.iterations = memory_.iterations;
-    return work;
-  }
 
  private:
-  using Base::damps, Base::memory_, Base::problem_, Base::registers_;
+  using Base::damps, Base::memory_, Base::problem_, Base::registers_, Base::work_;
   /// The error of a step over the tolerance, for errors add up; that of the sweeps over the error of a step.
   static constexpr double of_tolerance = 0.05, sweeps_part = 0.05;
   /// Steps that grow a little cost more than they save: their starting values are worse.
@@ -233,7 +227,6 @@ class LawsonControlled : public detail::LawsonRun<s, P> {
   double most_tail_;
   SweepRule rule_;
   StepSize<double> size_{step_rule, s};
-  Work work_;
 };
 
 /// 4 or 8 stages; evaluations  s a sweep, 4 to 14 sweeps a step; s more after a restart
