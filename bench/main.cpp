@@ -134,7 +134,8 @@ int finish(int code) {
 
 }  // namespace
 
-int main(int argc, char** argv) {
+// What cannot even be told ends the program.
+int main(int argc, char** argv) {  // NOLINT(bugprone-exception-escape)
   CLI::App app{"Polhode: how well do integrators keep an attitude, and at what cost?", "polhode"};
   app.set_version_flag("--version", bench::version_text());
   app.require_subcommand(1);

@@ -58,7 +58,7 @@ std::optional<double> growth_exponent(std::vector<double> const& times, std::vec
 
 Metrics::Metrics(UsableReference const* reference, BodyParameters const* free_body, double t_end,
                  std::optional<PinnedBody<Quad>> pinned, int comparisons)
-    : reference_(reference), pinned_(std::move(pinned)), t_end_(t_end), comparisons_(comparisons) {
+    : reference_(reference), pinned_(pinned), t_end_(t_end), comparisons_(comparisons) {
   if (free_body) inertia_ = free_body->matrix<Quad>();
 }
 

@@ -54,7 +54,7 @@ bool speaks_for_the_job() {
 
 Ranks::Ranks(std::unique_ptr<Channel> channel) : channel_(std::move(channel)), unwinding_(std::uncaught_exceptions()) {}
 
-Ranks::~Ranks() {
+Ranks::~Ranks() {  // NOLINT(bugprone-exception-escape): who cannot take leave ends, and the launcher the others
   if (!channel_) return;
   bool const unwinding = std::uncaught_exceptions() > unwinding_;
   if (unwinding && !ended_together_ && !alone()) return;  // the others do not know: the launcher ends them

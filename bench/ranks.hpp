@@ -29,7 +29,7 @@ class Ranks {
   /// Ranks that reach each other through `channel`; null: alone.
   explicit Ranks(std::unique_ptr<Channel> channel);
   /// Takes leave of the others, once all are there.
-  ~Ranks();
+  ~Ranks();  // NOLINT(bugprone-exception-escape)
   Ranks(Ranks const&) = delete;
   Ranks& operator=(Ranks const&) = delete;
 

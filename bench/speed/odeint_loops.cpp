@@ -7,6 +7,7 @@
 
 #include "bench/speed/ensemble_size.hpp"
 #include "bench/speed/speed.hpp"
+#include "integrators/registers.hpp"
 #include "problems/rigid_body.hpp"
 
 namespace polhode::bench {
@@ -91,10 +92,7 @@ void odeint_loop(benchmark::State& state, bool avx2, long bodies, long steps) {
 }  // namespace
 
 void add_odeint_loops() {
-  bool avx2 = false;
-#if defined(__x86_64__) && !defined(__SSE3__)
-  avx2 = __builtin_cpu_supports("x86-64-v3");
-#endif
+  bool const avx2 = widest_registers() != Registers::of_the_unit;
   constexpr long steps_of_one = 5000;
   benchmark::RegisterBenchmark("plain/free_body/odeint_rk4", odeint_loop<false>, false, 1, steps_of_one)
       ->Unit(benchmark::kMicrosecond);
