@@ -10,12 +10,14 @@
 #include <cstdlib>
 #include <fstream>
 #include <functional>
-#include <iterator>
 #include <nlohmann/json.hpp>
+
+#include "tests/temporary_folder.hpp"
 
 namespace {
 
 using namespace polhode::results;
+using polhode::test::text_of;
 namespace fs = std::filesystem;
 
 Meta const meta{{"build", "b"}};
@@ -43,11 +45,6 @@ Series series_of(Record const& record, std::string const& name, double value) {
   return Series{record.cell, name, {"t"}, {"s"}, {{value}}};
 }
 
-std::string text_of(fs::path const& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 void put(fs::path const& file, std::string const& text) {
   std::ofstream(file, std::ios::binary) << text;
 }
@@ -73,16 +70,8 @@ std::string error_of(std::function<void()> const& f) {
 /// Each test has a folder of its own.
 class Store : public testing::Test {
  protected:
-  void SetUp() override {
-    std::string name = testing::TempDir() + "polhode_store_XXXXXX";
-    ASSERT_NE(::mkdtemp(name.data()), nullptr);
-    folder = name;
-    file = folder / "a.jsonl";
-  }
-  void TearDown() override { fs::remove_all(folder); }
-
-  fs::path folder;
-  fs::path file;
+  polhode::test::TemporaryFolder top;
+  fs::path const folder = top.path, file = folder / "a.jsonl";
 };
 
 // --- What is written is read -----------------------------------------------------------------------------------------
