@@ -90,10 +90,9 @@ Trajectory run(PreparedCell const& prepared, Metrics* metrics, Limits const& lim
               fmt::format("stopped after {:g} s of wall time at t = {:.6g} s", limits.timeout, recorder.reached);
         } catch (Stalled const&) {
           trajectory.status = results::Status::stalled;
-          trajectory.reason = fmt::format(
-              "at t = {:.6g} s its steps are so short that the horizon would take more "
-              "than 2e7 of them",
-              recorder.reached);
+          trajectory.reason =
+              fmt::format("at t = {:.6g} s its steps are so short that the horizon would take more than 2e7 of them",
+                          recorder.reached);
         } catch (std::exception const& error) {
           trajectory.status = results::Status::crashed;
           trajectory.reason = error.what();

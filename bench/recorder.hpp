@@ -1,5 +1,7 @@
 #pragma once
 /// What the harness writes down of a run, step by step: its history and its metrics; and what makes a run end early.
+#include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "bench/cell.hpp"
@@ -28,16 +30,19 @@ class Deadline {
   std::int64_t calls_ = 0;
 };
 
-/// Thrown by a watch when a method's own steps have become so short that it would take hours.
+/// Thrown by a watch when steps have become so short that the run would take hours.
 struct Stalled {};
 
-/// Sees that a method which chooses its steps gets on.
+/// Sees that a run gets on: a method that chooses its steps, or equal steps that end on one located event after the
+/// other.
 class Pace {
  public:
-  Pace(double t_end, bool watched) : least_(double(window) * t_end / most_steps), watched_(watched) {}
-  /// Throws Stalled if at the pace of the last 2^16 steps the horizon would take more than 2e7.
+  Pace(double t_end, std::optional<double> h)
+      : least_(double(window) * t_end / std::max(most_steps, h ? 10 * t_end / *h : 0)) {}
+  /// Throws Stalled if at the pace of the last 2^16 steps the horizon would take more than 2e7 (and than ten times the
+  /// equal steps that it has).
   void check(double t) {
-    if (!watched_ || ++steps_ % window != 0) return;
+    if (++steps_ % window != 0) return;
     if (t - last_ < least_) throw Stalled{};
     last_ = t;
   }
@@ -46,7 +51,6 @@ class Pace {
   static constexpr std::int64_t window = 1 << 16;
   static constexpr double most_steps = 2e7;
   double least_, last_ = 0;
-  bool watched_;
   std::int64_t steps_ = 0;
 };
 
@@ -62,7 +66,7 @@ class Recorder final : public Watch<M> {
         metrics_(metrics),
         history_(history),
         deadline_(limits),
-        pace_(prepared.cell.t_end, prepared.cell.rtol.has_value()),
+        pace_(prepared.cell.t_end, prepared.cell.h),
         t_end_(prepared.cell.t_end),
         keeps_steps_(metrics && !(prepared.schedule.sample_period > 0) && !prepared.problem->info().claims.empty()) {}
 

@@ -12,7 +12,7 @@ namespace polhode {
 
 /// A field that depends on time alone, if prescribed_rates() is true.
 template <class P>
-concept PrescribedRates = Problem<P> && requires(P const p) {
+concept PrescribedRates = Problem<P> && requires(P const& p) {
   { p.prescribed_rates() } -> std::same_as<bool>;
 };
 

@@ -19,7 +19,7 @@ namespace polhode {
 ///   torque(t, x)           [N m, body]; of sampled control the one that is held
 template <class P>
 concept RigidBodyProblem = Problem<P> && TurningBody<typename P::Space> &&
-    requires(P const p, typename P::Space::Scalar t, Point<typename P::Space> const x) {
+    requires(P const& p, typename P::Space::Scalar t, Point<typename P::Space> const x) {
   { p.inertia_matrix() } -> std::same_as<Mat3<Real<typename P::Space::Scalar>>>;
   { p.torque_free() } -> std::same_as<bool>;
   { p.torque_feels_rate() } -> std::same_as<bool>;

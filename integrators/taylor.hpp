@@ -141,7 +141,7 @@ TaylorSegment<R, degree> expand(P const& p, std::vector<R> const& state, R const
 /// A problem that knows itself on power series: in_series() is the same problem, in the same phase and with the same
 /// torque held, its state's components in the same order.
 template <class P>
-concept KnowsItsSeries = Problem<P> && SmallSpace<typename P::Space> && P::Space::flat && requires(P const p) {
+concept KnowsItsSeries = Problem<P> && SmallSpace<typename P::Space> && P::Space::flat && requires(P const& p) {
   requires SeriesProblem<std::decay_t<decltype(p.in_series())>>;
 };
 template <KnowsItsSeries P>

@@ -137,7 +137,7 @@ bool put_on_constraint(PinnedBody<S> const& body, Point<A>& attitude, Vec3<S>& p
 
 /// A problem with constraints that methods may look at.
 template <class P>
-concept ConstrainedProblem = Problem<P> && requires(P const p) {
+concept ConstrainedProblem = Problem<P> && requires(P const& p) {
   { p.mechanics() } -> std::same_as<PinnedBody<typename P::Space::Scalar> const&>;
 };
 

@@ -13,7 +13,7 @@ namespace polhode {
 /// problems/README.md goes through it.
 template <class P>
 concept Problem = Space<typename P::Space> &&
-    requires(P const p, typename P::Space::Scalar t, Point<typename P::Space> const x, Velocity<typename P::Space> v) {
+    requires(P const& p, typename P::Space::Scalar t, Point<typename P::Space> const x, Velocity<typename P::Space> v) {
   { p.initial() } -> std::same_as<Point<typename P::Space>>;
   requires requires {
     { p(t, x) } -> std::same_as<Velocity<typename P::Space>>;

@@ -132,6 +132,13 @@ TEST(DeadZoneEvents, AMethodThatStallsInTheGapsSaysSoAndKeepsItsCounts) {
   EXPECT_EQ(record.events_located, 0);
 }
 
+TEST(DeadZoneEvents, EqualStepsThatEndOnOneEventAfterTheOtherStall) {  // h k / beta = 5: past RK4's limit, v chatters
+  results::Record const record =
+      a_cell("dead_zone", "quaternion", "rk4").of_variant("continuous").with_h(0.05).until(100).measured().record;
+  EXPECT_TRUE(record.status == results::Status::stalled || record.status == results::Status::diverged) << record.reason;
+  EXPECT_LT(record.steps.value_or(0), 1'000'000);
+}
+
 // ---- Ends of charts -------------------------------------------------------------------------------------------------
 
 TEST(Charts, ThatEndEndTheRunAsDiverged) {

@@ -12,7 +12,7 @@ namespace polhode {
 ///   jacobian(t, x, J)  J[i + n j] = d rate_i / d x_j at (t, x): by columns, n numbers in a state
 template <class P>
 concept DifferentiableProblem = LibraryProblem<P> &&
-    requires(P const p, typename P::Space::Scalar t, Point<typename P::Space> const x, std::span<double> J) {
+    requires(P const& p, typename P::Space::Scalar t, Point<typename P::Space> const x, std::span<double> J) {
   { p.has_jacobian() } -> std::same_as<bool>;
   p.jacobian(t, x, J);
 };
