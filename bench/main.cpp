@@ -11,13 +11,13 @@
 #include <new>
 #include <system_error>
 
-#include "bench/commands.hpp"
-#include "bench/messages.hpp"
-#include "bench/provenance.hpp"
-#include "bench/ranks.hpp"
+#include "bench/commands/commands.hpp"
+#include "bench/job/ranks.hpp"
+#include "bench/process/messages.hpp"
+#include "bench/process/provenance.hpp"
 #include "report/comparison.hpp"
+#include "report/render/trajectory.hpp"
 #include "report/report.hpp"
-#include "report/trajectory.hpp"
 #include "results/store.hpp"
 #include "results/terminal.hpp"
 

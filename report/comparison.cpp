@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "report/render.hpp"
+#include "report/render/render.hpp"
 #include "report/text.hpp"
 
 namespace polhode::report {

@@ -8,7 +8,7 @@
 #include <set>
 #include <tuple>
 
-#include "report/palette.hpp"
+#include "report/render/palette.hpp"
 
 namespace polhode::report {
 namespace {

@@ -5,9 +5,9 @@
 #include <fstream>
 #include <vector>
 
-#include "report/latex.hpp"
-#include "report/render.hpp"
-#include "report/sections.hpp"
+#include "report/render/latex.hpp"
+#include "report/render/render.hpp"
+#include "report/sections/sections.hpp"
 #include "report/text.hpp"
 
 namespace polhode::report {

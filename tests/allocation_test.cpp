@@ -5,7 +5,7 @@
 #include <new>
 #include <optional>
 
-#include "bench/allocations.hpp"
+#include "bench/process/allocations.hpp"
 #include "tests/runs.hpp"
 
 namespace polhode {

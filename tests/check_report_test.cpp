@@ -1,5 +1,5 @@
 /// How the outcome of a check is written down: for a terminal, for a CI server, for a summary page.
-#include "bench/check_report.hpp"
+#include "bench/score/check_report.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

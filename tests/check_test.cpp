@@ -1,5 +1,5 @@
 /// Expectations against made-up records: what passes, and what fails with which words.
-#include "bench/check.hpp"
+#include "bench/score/check.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

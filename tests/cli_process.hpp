@@ -18,7 +18,7 @@
 #include <thread>
 #include <vector>
 
-#include "bench/machine.hpp"
+#include "bench/process/machine.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace polhode::cli {

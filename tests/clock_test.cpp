@@ -1,5 +1,5 @@
 // Limits of wall time.
-#include "bench/clock.hpp"
+#include "bench/process/clock.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "report/render.hpp"
+#include "report/render/render.hpp"
 
 namespace polhode::report {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "bench/problems.hpp"
+#include "bench/solve/problems.hpp"
 #include "problems/space_laws.hpp"
 #include "tests/runs.hpp"
 

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bench/allocations.hpp"
+#include "bench/process/allocations.hpp"
 #include "integrators/generalized_alpha.hpp"
 #include "problems/erased.hpp"
 #include "tests/pinned_runs.hpp"

@@ -1,7 +1,7 @@
 /// ARKODE's diagonally implicit method: its errors, order and counts, what restarts forget, how it fails, its events.
 #include <gtest/gtest.h>
 
-#include "bench/allocations.hpp"
+#include "bench/process/allocations.hpp"
 #include "integrators/rivals/arkode.hpp"
 #include "problems/pd_slew.hpp"
 #include "problems/quaternion_sync.hpp"

@@ -1,5 +1,5 @@
 // Whether a machine is fit to take times on, told from files as Linux writes them.
-#include "bench/doctor.hpp"
+#include "bench/process/doctor.hpp"
 
 #include <gmock/gmock.h>
 

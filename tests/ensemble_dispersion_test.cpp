@@ -1,11 +1,11 @@
 /// Random numbers of ensembles: the generator against its authors' answers, distributions against their laws.
-#include "bench/dispersion.hpp"
+#include "bench/ensemble/dispersion.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "bench/philox.hpp"
+#include "bench/ensemble/philox.hpp"
 
 namespace polhode::bench {
 namespace {

@@ -1,5 +1,5 @@
 /// Ensembles: every body of one is the body run alone, whatever the registers, the neighbours and the threads.
-#include "bench/ensemble.hpp"
+#include "bench/ensemble/ensemble.hpp"
 
 #include <gtest/gtest.h>
 

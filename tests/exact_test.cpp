@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "bench/cell.hpp"
-#include "bench/reference.hpp"
+#include "bench/cell/cell.hpp"
+#include "bench/cell/reference.hpp"
 #include "integrators/gauss.hpp"
 #include "problems/exact.hpp"
 #include "problems/rigid_body.hpp"

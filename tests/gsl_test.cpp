@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/allocations.hpp"
+#include "bench/process/allocations.hpp"
 #include "problems/pd_slew.hpp"
 #include "problems/quaternion_sync.hpp"
 #include "problems/tether_capture.hpp"

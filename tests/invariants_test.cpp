@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench/measure.hpp"
+#include "bench/cell/measure.hpp"
 #include "tests/turning_ball.hpp"
 
 namespace polhode::bench {

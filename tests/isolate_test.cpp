@@ -1,5 +1,5 @@
 // Work in child processes: whatever becomes of one, the others go on. And one writer for a result folder.
-#include "bench/isolate.hpp"
+#include "bench/job/isolate.hpp"
 
 #include <gmock/gmock.h>
 #include <sys/wait.h>

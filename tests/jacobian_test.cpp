@@ -2,7 +2,7 @@
 /// libraries do with them.
 #include <gtest/gtest.h>
 
-#include "bench/allocations.hpp"
+#include "bench/process/allocations.hpp"
 #include "integrators/rivals/arkode.hpp"
 #include "integrators/rivals/cvode.hpp"
 #include "problems/dead_zone.hpp"

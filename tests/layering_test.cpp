@@ -1,5 +1,6 @@
 /// The layers: who may include whom, no cycles, and every header introduced by a file comment.
-/// problems <- integrators <- bench -> results <- report; only bench/main.cpp sees both bench and report.
+/// problems <- integrators <- bench -> results <- report; only bench/main.cpp sees both bench and report. bench has
+/// floors.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -40,8 +41,19 @@ std::set<std::string> const generated{"build_info.hpp"};
 /// Folders whose sources are written as if by somebody else, against the installed library.
 std::set<std::string> const strangers{"tests/consumer", "tests/must_fail"};
 
+/// The floors of bench: a folder knows itself, and those of lower floors.
+std::map<std::string, int> const floors{
+    {"bench/process", 0},  {"bench/input", 1}, {"bench/solve", 2}, {"bench/cell", 3},     {"bench/job", 4},
+    {"bench/ensemble", 4}, {"bench/score", 4}, {"bench/speed", 5}, {"bench/commands", 5}, {"bench", 6},
+};
+bool goes_down(std::string const& file, std::string const& included) {
+  std::string const from = file.substr(0, file.rfind('/')), to = included.substr(0, included.rfind('/'));
+  return from == to || floors.at(from) > floors.at(to);
+}
+
 bool may_include(std::string const& file, std::string const& included) {
   if (file == "bench/main.cpp" && layer_of(included) == "report") return true;
+  if (layer_of(file) == "bench" && layer_of(included) == "bench" && !goes_down(file, included)) return false;
   return allowed.at(layer_of(file)).contains(layer_of(included));
 }
 
@@ -136,17 +148,29 @@ TEST(Layering, WhatIsRightPasses) {
               IsEmpty());
 }
 
+TEST(Layering, BenchIsClimbedFromFloorToFloor) {
+  Sources sources{{"bench/input/suite.hpp", head},
+                  {"bench/job/run.hpp", head + "#include \"bench/input/suite.hpp\"\n"},
+                  {"bench/ensemble/job.hpp", head}};
+  EXPECT_THAT(violations(sources), IsEmpty());
+  sources["bench/input/up.hpp"] = head + "#include \"bench/job/run.hpp\"\n";
+  sources["bench/job/aside.hpp"] = head + "#include \"bench/ensemble/job.hpp\"\n";
+  EXPECT_THAT(violations(sources), ElementsAre("bench/input/up.hpp: must not know bench/job/run.hpp",
+                                               "bench/job/aside.hpp: must not know bench/ensemble/job.hpp"));
+}
+
 TEST(Layering, UpwardIncludesAreFound) {
   Sources const sources{{"bench/c.hpp", head},
-                        {"bench/run.cpp", "#include \"report/r.hpp\"\n"},
+                        {"bench/job/run.cpp", "#include \"report/r.hpp\"\n"},
                         {"integrators/b.hpp", head + "#include \"bench/c.hpp\"\n"},
                         {"problems/a.hpp", head + "# include <integrators/b.hpp>\n"},
                         {"report/r.hpp", head + "#include \"problems/a.hpp\"\n"},
                         {"results/s.cpp", "  #include \"report/r.hpp\"\n"}};
-  EXPECT_THAT(violations(sources),
-              ElementsAre("bench/run.cpp: must not know report/r.hpp", "integrators/b.hpp: must not know bench/c.hpp",
-                          "problems/a.hpp: must not know integrators/b.hpp",
-                          "report/r.hpp: must not know problems/a.hpp", "results/s.cpp: must not know report/r.hpp"));
+  EXPECT_THAT(
+      violations(sources),
+      ElementsAre("bench/job/run.cpp: must not know report/r.hpp", "integrators/b.hpp: must not know bench/c.hpp",
+                  "problems/a.hpp: must not know integrators/b.hpp", "report/r.hpp: must not know problems/a.hpp",
+                  "results/s.cpp: must not know report/r.hpp"));
 }
 
 TEST(Layering, CyclesAreFound) {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/allocations.hpp"
+#include "bench/process/allocations.hpp"
 #include "integrators/lie_group.hpp"
 #include "problems/free_body.hpp"
 #include "problems/tether_capture.hpp"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "bench/allocations.hpp"
+#include "bench/process/allocations.hpp"
 #include "integrators/commutator_free_pair.hpp"
 #include "problems/erased.hpp"
 #include "problems/free_body.hpp"

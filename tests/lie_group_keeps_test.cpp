@@ -1,7 +1,7 @@
 /// What every method on groups owes: the constraint, many bodies like one, no allocations.
 #include <gtest/gtest.h>
 
-#include "bench/allocations.hpp"
+#include "bench/process/allocations.hpp"
 #include "integrators/lie_gauss.hpp"
 #include "integrators/lie_group.hpp"
 #include "problems/erased.hpp"

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "bench/allocations.hpp"
+#include "bench/process/allocations.hpp"
 #include "problems/coning.hpp"
 #include "problems/dual.hpp"
 #include "problems/jet.hpp"

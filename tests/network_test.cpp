@@ -1,7 +1,7 @@
 /// Many bodies: the laws of their space, what they cost, and that every formulation tells the same story.
 #include <gtest/gtest.h>
 
-#include "bench/allocations.hpp"
+#include "bench/process/allocations.hpp"
 #include "problems/space_laws.hpp"
 #include "tests/random_numbers.hpp"
 #include "tests/runs.hpp"

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "bench/run_loop.hpp"
+#include "bench/solve/run_loop.hpp"
 #include "integrators/gauss.hpp"
 #include "integrators/gauss_canonical.hpp"
 #include "integrators/high_order.hpp"

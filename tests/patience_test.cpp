@@ -1,5 +1,5 @@
 // What takes long says so: once where nobody watches.
-#include "bench/patience.hpp"
+#include "bench/process/patience.hpp"
 
 #include <gtest/gtest.h>
 

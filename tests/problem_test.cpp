@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "bench/run_loop.hpp"
+#include "bench/solve/run_loop.hpp"
 #include "integrators/gauss.hpp"
 #include "integrators/runge_kutta.hpp"
 #include "problems/catalog.hpp"

@@ -1,5 +1,5 @@
 /// Ranks that are threads of this process: what MPI carries elsewhere goes through queues here.
-#include "bench/ranks.hpp"
+#include "bench/job/ranks.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "bench/vocabulary.hpp"
+#include "bench/input/vocabulary.hpp"
 
 namespace polhode::bench {
 namespace {

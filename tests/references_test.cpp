@@ -1,13 +1,13 @@
 // What a run is held against, or why it is held against nothing.
-#include "bench/references.hpp"
+#include "bench/cell/references.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "bench/cell_flags.hpp"
-#include "bench/data.hpp"
+#include "bench/input/cell_flags.hpp"
+#include "bench/process/data.hpp"
 
 namespace polhode::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "report/sections.hpp"
+#include "report/sections/sections.hpp"
 #include "report/text.hpp"
 #include "results/ensemble_file.hpp"
 

@@ -6,7 +6,7 @@
 
 #include "report/facts.hpp"
 #include "report/located.hpp"
-#include "report/render.hpp"
+#include "report/render/render.hpp"
 #include "report/text.hpp"
 #include "tests/report_samples.hpp"
 

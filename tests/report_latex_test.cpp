@@ -1,6 +1,6 @@
 /// Tables for papers: what LaTeX prints is what Markdown prints, both are the CSV file's numbers at the printed
 /// precision, and those are the records'. Walked over every table of a report.
-#include "report/latex.hpp"
+#include "report/render/latex.hpp"
 
 #include <gmock/gmock.h>
 

@@ -7,7 +7,7 @@
 
 #include "problems/free_body.hpp"
 #include "report/located.hpp"
-#include "report/page.hpp"
+#include "report/render/page.hpp"
 #include "report/text.hpp"
 #include "tests/report_fixture.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "report/render.hpp"
+#include "report/render/render.hpp"
 #include "report/text.hpp"
 #include "tests/report_fixture.hpp"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "bench/run_loop.hpp"
+#include "bench/solve/run_loop.hpp"
 #include "integrators/gauss.hpp"
 #include "problems/definition.hpp"
 #include "problems/pd_slew.hpp"

@@ -1,5 +1,5 @@
 /// What a run says at a terminal.
-#include "bench/run_report.hpp"
+#include "bench/job/run_report.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "bench/additions.hpp"
-#include "bench/cell.hpp"
+#include "bench/cell/cell.hpp"
+#include "bench/process/additions.hpp"
 
 namespace polhode::test {
 

@@ -1,9 +1,9 @@
-#include "bench/slurm.hpp"
+#include "bench/job/slurm.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "bench/vocabulary.hpp"
+#include "bench/input/vocabulary.hpp"
 
 namespace polhode::bench {
 namespace {

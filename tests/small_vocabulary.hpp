@@ -2,7 +2,7 @@
 /// A vocabulary of three problems and four integrators, small enough that tests can spell out every message.
 #include <string>
 
-#include "bench/vocabulary.hpp"
+#include "bench/input/vocabulary.hpp"
 
 namespace polhode::bench::test {
 

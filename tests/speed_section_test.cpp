@@ -1,7 +1,7 @@
 // Who is first, and by how much: from made-up records whose answers are known, with losses, failures and missing times.
 #include <nlohmann/json.hpp>
 
-#include "report/speed.hpp"
+#include "report/sections/speed.hpp"
 #include "tests/report_fixture.hpp"
 
 namespace polhode::report {

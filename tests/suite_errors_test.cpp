@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "bench/suite.hpp"
+#include "bench/input/suite.hpp"
 #include "tests/suite_file.hpp"
 
 namespace polhode::bench {

@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <string>
 
-#include "bench/suite.hpp"
+#include "bench/input/suite.hpp"
 #include "tests/small_vocabulary.hpp"
 #include "tests/temporary_folder.hpp"
 

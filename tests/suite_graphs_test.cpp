@@ -1,5 +1,5 @@
 // The graph files of a suite, which are copied into the result folder under their names.
-#include "bench/suite_graphs.hpp"
+#include "bench/input/suite_graphs.hpp"
 
 #include <gmock/gmock.h>
 

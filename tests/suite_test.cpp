@@ -1,4 +1,4 @@
-#include "bench/suite.hpp"
+#include "bench/input/suite.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "bench/allocations.hpp"
+#include "bench/process/allocations.hpp"
 #include "integrators/gauss.hpp"
 #include "integrators/lie_group.hpp"
 #include "problems/definition.hpp"

@@ -1,7 +1,7 @@
 /// Spacecraft that synchronise: claims, choices that cannot be, held sides, swarms of any number.
 #include <gtest/gtest.h>
 
-#include "bench/allocations.hpp"
+#include "bench/process/allocations.hpp"
 #include "problems/quaternion_sync.hpp"
 #include "tests/swarm_runs.hpp"
 

@@ -1,5 +1,5 @@
 // The cells of a suite on their way through a run.
-#include "bench/tasks.hpp"
+#include "bench/job/tasks.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // The timing pass: repetitions of different cells in random order, and what is made of them.
-#include "bench/timing.hpp"
+#include "bench/cell/timing.hpp"
 
 #include <gtest/gtest.h>
 

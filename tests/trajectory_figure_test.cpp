@@ -1,5 +1,5 @@
 /// The picture of one run: which panels its columns make, and that gnuplot draws them.
-#include "report/trajectory.hpp"
+#include "report/render/trajectory.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,5 @@
 // Trajectories of other programs as CSV: what is read, what is reported, and what a mistake says.
-#include "bench/trajectory.hpp"
+#include "bench/input/trajectory.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 /// A run that can be computed by hand: a ball that turns about z at a constant rate, with errors and drifts of known
 /// size put in.
-#include "bench/measure.hpp"
+#include "bench/cell/measure.hpp"
 
 namespace polhode::bench::test {
 

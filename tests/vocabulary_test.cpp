@@ -1,4 +1,4 @@
-#include "bench/vocabulary.hpp"
+#include "bench/input/vocabulary.hpp"
 
 #include <gtest/gtest.h>
 

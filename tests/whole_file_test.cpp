@@ -9,10 +9,10 @@
 #include <functional>
 #include <map>
 
-#include "bench/certificate.hpp"
-#include "bench/suite.hpp"
-#include "bench/suite_graphs.hpp"
-#include "bench/trajectory.hpp"
+#include "bench/cell/certificate.hpp"
+#include "bench/input/suite.hpp"
+#include "bench/input/suite_graphs.hpp"
+#include "bench/input/trajectory.hpp"
 #include "problems/parameters.hpp"
 #include "results/golden.hpp"
 #include "results/store.hpp"

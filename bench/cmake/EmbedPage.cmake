@@ -26,7 +26,7 @@ foreach(part IN ITEMS style code plotly)
   endif()
   string(APPEND literals "      .${part} = R\"polhode_page(${${part}_text})polhode_page\",\n")
 endforeach()
-file(WRITE "${output}" "// Written by bench/cmake/EmbedPage.cmake.\n#include \"report/page.hpp\"\n
+file(WRITE "${output}" "// Written by bench/cmake/EmbedPage.cmake.\n#include \"report/render/page.hpp\"\n
 namespace polhode::report {\n
 PageAssets page_assets() {\n  return {\n${literals}  };\n}\n
 }  // namespace polhode::report\n")

@@ -1,4 +1,4 @@
-# Runs on several ranks (bench/mpi.cpp). By default on where MPI is found: a binary without it can only say so under
+# Runs on several ranks (bench/job/mpi.cpp). By default on where MPI is found: a binary without it can only say so under
 # mpirun, and MPI costs a run without mpirun nothing but its loading (1.2 ms). Packages are made without it (preset
 # release), or every user would have to install it.
 if(NOT DEFINED POLHODE_MPI OR POLHODE_MPI)
@@ -13,7 +13,7 @@ if(NOT MPI_CXX_FOUND)
   message(FATAL_ERROR "POLHODE_MPI is ON, but there is no MPI: install openmpi-bin and libopenmpi-dev")
 endif()
 list(TRANSFORM MPI_CXX_INCLUDE_DIRS PREPEND -isystem OUTPUT_VARIABLE includes)
-set_source_files_properties(${PROJECT_SOURCE_DIR}/bench/mpi.cpp TARGET_DIRECTORY polhode_harness PROPERTIES
+set_source_files_properties(${PROJECT_SOURCE_DIR}/bench/job/mpi.cpp TARGET_DIRECTORY polhode_harness PROPERTIES
                             COMPILE_DEFINITIONS "POLHODE_HAS_MPI;OMPI_SKIP_MPICXX;MPICH_SKIP_MPICXX"
                             COMPILE_OPTIONS "${includes}")
 # Files, not the imported target: one source needs its flags, and who uses the installed harness need not find MPI.

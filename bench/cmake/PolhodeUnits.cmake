@@ -4,17 +4,17 @@
 #   polhode_add_binary(my_polhode INTEGRATORS heun.hpp:Heun PROBLEMS damped_body.hpp:my::DampedBody)
 #   polhode_add_conformance(my_polhode)     # tests of what was added; needs GTest
 #
-# Whoever includes this file sets the global property POLHODE_SOURCES, the folder of bench/*_unit.cpp and tests/, and may
+# Whoever includes this file sets the global property POLHODE_SOURCES, the folder of bench/solve/*_unit.cpp and tests/, and may
 # set POLHODE_WARNINGS, flags for what is compiled here.
 
 # Speed without changing results: IEEE arithmetic in every build, so that counts and round-off agree between machines.
 set_property(GLOBAL PROPERTY POLHODE_ARITHMETIC -ffp-contract=off -fno-math-errno)
 
-# Compiles bench/`source` once more, with definitions, for `target`, an INTERFACE library or an archive.
+# Compiles bench/solve/`source` once more, with definitions, for `target`, an INTERFACE library or an archive.
 function(polhode_unit target name source)
   get_property(sources GLOBAL PROPERTY POLHODE_SOURCES)
   get_property(arithmetic GLOBAL PROPERTY POLHODE_ARITHMETIC)
-  add_library(${name} OBJECT ${sources}/bench/${source})
+  add_library(${name} OBJECT ${sources}/bench/solve/${source})
   target_link_libraries(${name} PRIVATE polhode::core)
   target_compile_definitions(${name} PRIVATE ${ARGN})
   # Stores of mixed width stall the reads of the next step: 4.2x -> 2.4x on an erased field.

@@ -1,5 +1,5 @@
 /// Ensembles: what a step of one body costs among many, and what the machine's arithmetic allows.
-#include "bench/ensemble.hpp"
+#include "bench/ensemble/ensemble.hpp"
 
 #include "bench/speed/ensemble_size.hpp"
 #include "bench/speed/limited_pd.hpp"

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "bench/cell/timing.hpp"
 #include "bench/speed/speed.hpp"
-#include "bench/timing.hpp"
 #include "results/benchmarks.hpp"
 #include "results/statistics.hpp"
 

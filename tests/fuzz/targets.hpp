@@ -14,9 +14,9 @@
 #include <string>
 #include <string_view>
 
-#include "bench/certificate.hpp"
-#include "bench/suite.hpp"
-#include "bench/trajectory.hpp"
+#include "bench/cell/certificate.hpp"
+#include "bench/input/suite.hpp"
+#include "bench/input/trajectory.hpp"
 #include "problems/graph.hpp"
 #include "results/benchmarks.hpp"
 #include "results/ensemble_file.hpp"
