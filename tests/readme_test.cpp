@@ -73,7 +73,11 @@ TEST(Readme, VersionIsThatOfTheProject) {
   std::smatch version;
   ASSERT_TRUE(std::regex_search(project, version, std::regex(R"(project\(polhode VERSION ((\d+\.\d+)\.\d+))")));
   EXPECT_THAT(contents("CITATION.cff"), HasSubstr("\nversion: " + version.str(1) + "\n"));
-  EXPECT_THAT(contents("CHANGELOG.md"), HasSubstr("\n## " + version.str(1) + " "));
+  std::string const changelog = contents("CHANGELOG.md");
+  std::smatch release;
+  ASSERT_TRUE(std::regex_search(changelog, release, std::regex(R"(\n## (\S+) \((\d{4}-\d\d-\d\d)\)\n)")));
+  EXPECT_EQ(release.str(1), version.str(1));
+  EXPECT_THAT(contents("CITATION.cff"), HasSubstr("\ndate-released: " + release.str(2) + "\n"));
   EXPECT_THAT(contents("README.md"), HasSubstr("find_package(polhode " + version.str(2) + " REQUIRED)"));
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-/// The verbs of the command line, each in a file of its own: commands_VERB.cpp. The report's is in main.cpp.
+/// The verbs of the command line, each in a file of its own. The report's is in main.cpp.
 #include <CLI/App.hpp>
 #include <filesystem>
 #include <functional>
