@@ -125,11 +125,11 @@ template <class V, class S>
 POLHODE_INLINE void load(V& v, S const* in) {
   V::each([&](auto& a) POLHODE_LAMBDA { a = *in++; }, v);
 }
-/// The vector of the components from `in` on.
+/// The vector of the components from `in` on, in its own precision.
 template <class V, class S>
 V loaded(S const* in) {
   V v;
-  load(v, in);
+  V::each([&](auto& a) { a = std::remove_reference_t<decltype(a)>(*in++); }, v);
   return v;
 }
 
