@@ -112,9 +112,9 @@ const tests = {
   async 'the answer comes first, and opens'(browser) {
     const page = await open(browser, url);
     assert.equal(await page.locator('main table').first().locator('thead th').first().textContent(), 'need');
-    const [row] = await page.locator('#needs tbody tr', {hasText: 'long free motion'}).allTextContents();
+    const [row] = await page.locator('#table-needs tbody tr', {hasText: 'long free motion'}).allTextContents();
     assert.ok(row.includes('free_body, 50 s: '), row);
-    assert.equal(await page.locator('#needs tbody tr', {hasText: 'These records cannot say'}).count() > 0, true);
+    assert.equal(await page.locator('#table-needs tbody tr', {hasText: 'These records cannot say'}).count() > 0, true);
     await close(page);
   },
 

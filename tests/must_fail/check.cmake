@@ -13,7 +13,7 @@ foreach(entry IN LISTS entries)
     set(unit problem_unit.cpp -DPOLHODE_PROBLEM=Entry "-DPOLHODE_PROBLEM_HEADER=\"${entry}\"")
   endif()
   execute_process(COMMAND ${compiler} -std=gnu++20 -fsyntax-only -fmax-errors=1 -I${sources} -isystem ${eigen} ${unit}
-                  WORKING_DIRECTORY ${sources}/bench RESULT_VARIABLE code ERROR_VARIABLE output)
+                  WORKING_DIRECTORY ${sources}/bench/solve RESULT_VARIABLE code ERROR_VARIABLE output)
   string(REGEX MATCHALL "\n" lines "${output}")
   list(LENGTH lines count)
   string(FIND "${output}" "error: " first)
