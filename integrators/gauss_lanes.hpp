@@ -194,11 +194,11 @@ class LawsonControlled : public detail::LawsonRun<s, P> {
     for (std::int64_t trials = 0; t < t_end; ++trials) {
       if (trials > most_trials) return Status::max_steps;
       auto const trial = size_.even_trial(t, t_end);
-      if (size_.underflows(trial, t)) return unsolved ? Status::nonlinear_fail : Status::step_underflow;
+      if (StepSize<double>::underflows(trial, t)) return unsolved ? Status::nonlinear_fail : Status::step_underflow;
       auto const result = Step::step(field, feels, t, trial.h, x, memory_, rule_, true);
       unsolved = !result.solved;
       double const error = unsolved ? std::numeric_limits<double>::infinity() : result.tail / most_tail_;
-      if (!size_.accepts(error * error)) [[unlikely]] {
+      if (!StepSize<double>::accepts(error * error)) [[unlikely]] {
         ++work_.rejected;
         if (!all_finite(x)) return Status::diverged;
         size_.reject(trial, error * error);

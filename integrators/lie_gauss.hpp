@@ -141,7 +141,7 @@ struct LieGauss {
 template <int s>
 struct LieGaussEntry : LieGauss<s> {
   static_assert(1 <= s && s <= 4);
-  static constexpr std::string_view names[] = {"lie_gauss1", "lie_gauss2", "lie_gauss3", "lie_gauss4"};
+  static constexpr std::string_view names[4] = {"lie_gauss1", "lie_gauss2", "lie_gauss3", "lie_gauss4"};
   static constexpr MethodInfo info{
       .name = names[s - 1],
       .family = Family::gauss,

@@ -2,8 +2,6 @@
 /// Explicit methods that stay on the group by construction: Lie-Euler and Munthe-Kaas (RKMK) here; commutator-free ones
 /// and Crouch-Grossman's in files of their own. Use where the attitude must remain an attitude and steps are large;
 /// they keep the norm, not the energy.
-#include "integrators/commutator_free.hpp"
-#include "integrators/crouch_grossman.hpp"
 #include "integrators/runge_kutta.hpp"
 
 namespace polhode {

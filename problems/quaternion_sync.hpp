@@ -268,7 +268,7 @@ inline std::vector<ClaimResult> QuaternionSync::claims(History const& run) const
   constexpr double rounding = 1e-9;
   std::vector<double> const apart = run.column("disagreement"), least = run.column("scalar_min");
   bool const to_the_end = run.reaches(horizon);
-  // Our own numbers (tests/sync_test.cpp) hold for the paper's data, normalised.
+  // Our own numbers (tests/problems/sync_test.cpp) hold for the paper's data, normalised.
   bool const known = printed_ && !recomputed_ && !raw_ && !trap_ && to_the_end;
   auto const against = [&](double value, double of_7, double of_13, double tolerance) -> std::optional<bool> {
     if (!known) return {};

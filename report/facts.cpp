@@ -94,7 +94,7 @@ std::map<std::string, int> styles_of(std::vector<Instance> const& instances) {
       }
       return std::pair(n, others.size());
     };
-    auto const best = std::ranges::min_element(of_colour, {}, shared);
+    auto* const best = std::ranges::min_element(of_colour, {}, shared);
     looks[name] =
         static_cast<int>(static_cast<std::size_t>(best - of_colour.begin()) + of_colour.size() * best->size());
     best->push_back(name);

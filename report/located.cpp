@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "report/cases.hpp"
 #include "report/text.hpp"
 
 namespace polhode::report {
@@ -146,6 +147,23 @@ Panel error_panel(Facts const& facts, std::string title, std::vector<Sweep> cons
     if (!curve.points.empty()) panel.curves.push_back(std::move(curve));
   }
   return panel;
+}
+
+void add_located(Document& document, Facts const& facts, std::string const& name, std::string_view event,
+                 std::string_view events, std::vector<Sweep> const& sweeps) {
+  add_figure(document, {.name = name,
+                        .caption = fmt::format("Attitude error at the end against the step: steps that end on each "
+                                               "{}, and steps across.",
+                                               event),
+                        .panels = {error_panel(facts, fmt::format("{} located", events), part_of(sweeps, true)),
+                                   error_panel(facts, "not located", part_of(sweeps, false))},
+                        .columns = 2,
+                        .same_y = true});
+  document.add(error_table(name,
+                           fmt::format("Attitude error at the end [rad] by step, the measured order, and how many {} a "
+                                       "run ended a step on.",
+                                       events),
+                           sweeps));
 }
 
 std::string orders_in_words(std::vector<Sweep> const& sweeps, double h_most, ErrorKind const& kind) {

@@ -55,6 +55,11 @@ Table error_table(std::string name, std::string caption, std::vector<Sweep> cons
 Panel error_panel(Facts const& facts, std::string title, std::vector<Sweep> const& sweeps,
                   ErrorKind const& kind = attitude_at_end);
 
+/// Figure and table, both of this name, of the sweeps that end steps on events, and of those that do not. `event`, with
+/// its plural `events`: a kink of the actuators, a change of surface.
+void add_located(Document& document, Facts const& facts, std::string const& name, std::string_view event,
+                 std::string_view events, std::vector<Sweep> const& sweeps);
+
 /// "rk4 4.01, gauss2 4.00": the orders of these sweeps; empty if none has one.
 std::string orders_in_words(std::vector<Sweep> const& sweeps, double h_most = std::numeric_limits<double>::infinity(),
                             ErrorKind const& kind = attitude_at_end);

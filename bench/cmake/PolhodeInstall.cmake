@@ -26,11 +26,12 @@ install(DIRECTORY problems integrators results bench DESTINATION ${polhode_inclu
 install(DIRECTORY bench DESTINATION ${polhode_data_folder}/sources COMPONENT dev
         FILES_MATCHING PATTERN "*_unit.cpp" PATTERN "speed" EXCLUDE PATTERN "suites" EXCLUDE PATTERN "cmake" EXCLUDE)
 # What polhode_add_conformance compiles.
-set(conformance conformance_test.cpp conformance_tolerance_test.cpp conformance_integrators_unit.cpp
-                conformance_problem_unit.cpp orders.hpp symmetry.hpp runs.hpp slopes.hpp lie_group_runs.hpp
-                pinned_runs.hpp splitting_runs.hpp)
-list(TRANSFORM conformance PREPEND tests/)
-install(FILES ${conformance} DESTINATION ${polhode_data_folder}/sources/tests COMPONENT dev)
+set(conformance conformance_test.cpp tolerance_test.cpp integrators_unit.cpp problem_unit.cpp orders.hpp symmetry.hpp slopes.hpp)
+set(support runs.hpp lie_group_runs.hpp pinned_runs.hpp splitting_runs.hpp)
+foreach(folder IN ITEMS conformance support)
+  list(TRANSFORM ${folder} PREPEND tests/${folder}/)
+  install(FILES ${${folder}} DESTINATION ${polhode_data_folder}/sources/tests/${folder} COMPONENT dev)
+endforeach()
 
 foreach(set IN ITEMS polhode-targets polhode-harness-targets)
   install(EXPORT ${set} NAMESPACE polhode:: DESTINATION ${polhode_cmake_folder} COMPONENT dev)

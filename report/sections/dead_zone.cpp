@@ -246,20 +246,8 @@ void add_kinks(Document& document, Facts const& facts) {
   auto const sweeps = twins(facts, dead_zone().problem);
   if (sweeps.empty()) return;
   document.heading(3, "Kinks, located and not");
-  auto const located = part_of(sweeps, true), not_located = part_of(sweeps, false);
-  add_figure(document,
-             {.name = "dead-zone-kinks",
-              .caption = "Attitude error at the end against the step, on actuators with kinks: steps that end "
-                         "on the kinks, and steps across.",
-              .panels = {error_panel(facts, "kinks located", located), error_panel(facts, "not located", not_located)},
-              .columns = 2,
-              .same_y = true});
-  document.add(
-      error_table("dead-zone-kinks",
-                  "Attitude error at the end [rad] by step, the measured order, and how many kinks a run ended "
-                  "a step on.",
-                  sweeps));
-  std::string const with = orders_in_words(located), without = orders_in_words(not_located);
+  add_located(document, facts, "dead-zone-kinks", "kink", "kinks", sweeps);
+  std::string const with = orders_in_words(part_of(sweeps, true)), without = orders_in_words(part_of(sweeps, false));
   if (with.empty() && without.empty()) {
     double bar = 0;
     for (Sweep const& sweep : sweeps) bar = std::max(bar, finite(sweep.runs.front()->reference_bar).value_or(0));

@@ -109,23 +109,12 @@ void add_switching(Document& document, Facts const& facts) {
   auto const sweeps = twins(facts, so3_cooperative().problem);
   if (sweeps.empty()) return;
   document.heading(3, "The change of surface, located and not");
-  auto const located = part_of(sweeps, true), not_located = part_of(sweeps, false);
-  std::string const with = orders_in_words(located), without = orders_in_words(not_located);
+  std::string const with = orders_in_words(part_of(sweeps, true)), without = orders_in_words(part_of(sweeps, false));
   document.say(
       fmt::format("The torque jumps where a craft comes within 20 deg of its command. Measured orders: with steps that "
                   "end there {}; with steps across {}.",
                   with.empty() ? "none" : with, without.empty() ? "none, the errors do not lie on a line" : without));
-  add_figure(document,
-             {.name = "so3-switching",
-              .caption = "Attitude error at the end against the step where craft change their surface: steps "
-                         "that end on the change, and steps across.",
-              .panels = {error_panel(facts, "change located", located), error_panel(facts, "not located", not_located)},
-              .columns = 2,
-              .same_y = true});
-  document.add(error_table("so3-switching",
-                           "Attitude error at the end [rad] by step, the measured order, and how many changes of "
-                           "surface a run ended a step on.",
-                           sweeps));
+  add_located(document, facts, "so3-switching", "change of surface", "changes of surface", sweeps);
 }
 
 }  // namespace

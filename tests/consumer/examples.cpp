@@ -4,7 +4,7 @@
 
 #include "damped_body.hpp"
 #include "heun.hpp"
-#include "integrators/lie_group.hpp"
+#include "integrators/commutator_free.hpp"
 #include "problems/jet.hpp"
 
 namespace {

@@ -1,7 +1,7 @@
 // A user of the core: a free body by two methods, the norm and the attitude checked against printed digits.
 #include <cstdio>
 
-#include "integrators/lie_group.hpp"
+#include "integrators/commutator_free.hpp"
 #include "integrators/runge_kutta.hpp"
 #include "problems/free_body.hpp"
 

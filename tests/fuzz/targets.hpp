@@ -22,7 +22,7 @@
 #include "results/ensemble_file.hpp"
 #include "results/golden.hpp"
 #include "results/store.hpp"
-#include "tests/small_vocabulary.hpp"
+#include "tests/support/small_vocabulary.hpp"
 
 namespace polhode::fuzz {
 
