@@ -105,9 +105,11 @@ inline std::vector<ClaimResult> TetherCapture::claims(History const& run) const 
   bool const thrusters_alone = law_.actuators == TetherCase::thrusters;
   if (thrusters_alone) {
     double const printed = 77.5 * degree;
-    results.push_back({"alpha_max", greatest, printed, std::fabs(greatest - printed) <= 0.1 * degree});
     std::optional<double> const zero = history::first_zero(run.times, run.column("wy"));
-    results.push_back({"omega_y_zero", zero, 5.0, zero && std::fabs(*zero - 5.0) <= 1.0});
+    if (zero || run.reaches(6)) {  // else the run ends before what is printed can have happened
+      results.push_back({"alpha_max", greatest, printed, std::fabs(greatest - printed) <= 0.1 * degree});
+      results.push_back({"omega_y_zero", zero, 5.0, zero && std::fabs(*zero - 5.0) <= 1.0});
+    }
   } else {
     results.push_back({"alpha_max", greatest, {}, {}});
   }

@@ -10,7 +10,7 @@ set(plotly "")
 if(POLHODE_PLOTLY)
   set(plotly ${POLHODE_PLOTLY})
 else()
-  message(STATUS "plotly was not found (bench/install report fetches it): reports come without their interactive part")
+  message(STATUS "plotly was not found (bench/install page report fetches it): reports come without their interactive part")
 endif()
 
 set(page_folder ${PROJECT_SOURCE_DIR}/report/page)

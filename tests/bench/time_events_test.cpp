@@ -7,6 +7,7 @@
 
 #include "bench/solve/run_loop.hpp"
 #include "integrators/runge_kutta.hpp"
+#include "problems/erased.hpp"
 #include "problems/space.hpp"
 
 namespace polhode {

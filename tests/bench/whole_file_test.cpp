@@ -24,6 +24,7 @@ namespace polhode::results {
 namespace {
 
 namespace fs = std::filesystem;
+using polhode::test::complaint_of;
 using testing::EndsWith;
 using testing::HasSubstr;
 

@@ -288,6 +288,10 @@ TEST(TetherClaims, Case3) {
   EXPECT_EQ(bad.at("omega_y_zero").holds, false);
   EXPECT_EQ(bad.at("alpha_end").holds, false);
   EXPECT_EQ(bad.at("alpha_maxima").holds, false) << "two rises";
+
+  History until_4 = history_of({52, 60, 70});
+  until_4.times = {0, 2, 4};
+  EXPECT_FALSE(claims_of("case3", until_4).contains("omega_y_zero")) << "it is printed for 5 s";
 }
 
 TEST(TetherClaims, Case2IsWaveLikeAndCase1IsNot) {
