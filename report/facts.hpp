@@ -14,6 +14,22 @@
 
 namespace polhode::report {
 
+/// What a free body keeps, and how far a run was from it.
+struct Invariant {
+  std::string_view claim;  ///< as the catalogue says it
+  std::string_view name;
+  std::string_view unit;
+  std::optional<double> results::Record::*drift;
+};
+inline constexpr Invariant invariants[] = {
+    {"norm", "norm", "", &results::Record::norm_drift_max},
+    {"energy", "energy", "", &results::Record::energy_drift_max},
+    {"momentum", "|L|", "", &results::Record::momentum_drift_max},
+    {"momentum_direction", "direction of L", " [rad]", &results::Record::momentum_direction_max}};
+
+/// The errors in attitude at which methods are compared [rad].
+inline constexpr double usual_targets[] = {1e-6, 1e-9};
+
 /// True for the integrators of other libraries.
 bool is_rival(std::string_view integrator);
 /// True for methods that are careless on purpose (integrators/gauss_foils.hpp): compared, never recommended.

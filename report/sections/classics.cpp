@@ -132,7 +132,7 @@ void add_methods(Document& document, Facts const& facts) {
   for (Instance const& instance : facts.instances) {
     if (!is_classic(instance.like()) || !instance.comparable()) continue;
     Measure const measure = measure_of(instance);
-    for (double const target : {1e-6, 1e-9}) {
+    for (double const target : usual_targets) {
       auto const costs = ranking(instance, target, measure);
       if (costs.empty()) continue;
       Cost const *own = first_of(costs, false), *rival = first_of(costs, true);

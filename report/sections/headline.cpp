@@ -115,7 +115,7 @@ Table headline_table(Facts const& facts) {
       if (body && std::ranges::find(body->runs, run) != body->runs.end()) error = finite(run->attitude_error_max);
     }
     std::vector<Entry> row{std::string(line.label), number(drift, 2), number(error, 2)};
-    for (double const target : {1e-6, 1e-9}) {
+    for (double const target : usual_targets) {
       std::optional<Cost> least;
       for (Sweep const& sweep : body ? body->sweeps() : std::vector<Sweep>{}) {
         if (!line.is(sweep.like())) continue;

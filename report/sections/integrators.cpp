@@ -23,17 +23,6 @@ constexpr double coarse_step = 1;
 constexpr std::size_t least_points = 3;
 constexpr char const* not_measured = "not measured";
 
-struct Quantity {
-  std::string_view claim;  ///< as the catalogue says it
-  std::string_view name;
-  std::string_view unit;
-  std::optional<double> Record::*drift;
-};
-constexpr Quantity quantities[] = {{"norm", "norm", "", &Record::norm_drift_max},
-                                   {"energy", "energy", "", &Record::energy_drift_max},
-                                   {"momentum", "|L|", "", &Record::momentum_drift_max},
-                                   {"momentum_direction", "direction of L", " [rad]", &Record::momentum_direction_max}};
-
 /// What is known of one integrator, and where it was measured.
 struct Subject {
   std::string name;
@@ -148,7 +137,7 @@ std::string ends_of(Subject const& subject) {
 }
 
 /// "1.8e-16, claimed": the largest drift of a quantity, and whether the catalogue claims that it is kept.
-Entry keeping_of(Subject const& subject, Quantity const& q) {
+Entry keeping_of(Subject const& subject, Invariant const& q) {
   auto const drift = subject.free ? finite(subject.free->*q.drift) : std::nullopt;
   bool const is_claimed = subject.claims(q.claim);
   if (!drift) return is_claimed ? fmt::format("claimed, {}", not_measured) : not_measured;
@@ -210,11 +199,11 @@ Table kept_table(std::vector<Subject> const& subjects) {
                                      "symmetric are claims alone, which no drift measures.",
                                      significant(coarse_step)),
               .columns = {{"integrator"}}};
-  for (Quantity const& q : quantities) table.columns.push_back({fmt::format("{}{}", q.name, q.unit), true});
+  for (Invariant const& q : invariants) table.columns.push_back({fmt::format("{}{}", q.name, q.unit), true});
   table.columns.insert(table.columns.end(), {{"claimed structure"}, {"run"}, {"claims", false, true}});
   for (Subject const& s : subjects) {
     std::vector<Entry> row{s.name};
-    for (Quantity const& q : quantities) row.push_back(keeping_of(s, q));
+    for (Invariant const& q : invariants) row.push_back(keeping_of(s, q));
     std::vector<std::string> structure;
     for (auto const* what : {"symplectic", "symmetric"}) {
       if (s.claims(what)) structure.emplace_back(what);
@@ -243,7 +232,7 @@ Table source_table(std::vector<Subject> const& subjects) {
 std::vector<std::string> contradictions(std::vector<Subject> const& subjects) {
   std::vector<std::string> words;
   for (Subject const& s : subjects) {
-    for (Quantity const& q : quantities) {
+    for (Invariant const& q : invariants) {
       auto const drift = s.free ? finite(s.free->*q.drift) : std::nullopt;
       if (drift && *drift > kept && s.claims(q.claim)) {
         words.push_back(fmt::format("{} {}{} ({})", s.name, q.name, q.unit, significant(*drift, 2)));

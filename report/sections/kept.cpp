@@ -13,15 +13,6 @@ namespace {
 
 using results::Record;
 
-struct Quantity {
-  std::string_view name;
-  std::optional<double> Record::*drift;
-};
-constexpr Quantity quantities[] = {{"norm", &Record::norm_drift_max},
-                                   {"energy", &Record::energy_drift_max},
-                                   {"|L|", &Record::momentum_drift_max},
-                                   {"direction", &Record::momentum_direction_max}};
-
 bool is_shown(Record const& run) {
   return is_ok(run) && run.of.h && run.of.policy == "none" && finite(run.momentum_direction_max);
 }
@@ -36,7 +27,7 @@ std::optional<double> shown_step(Instance const& instance) {
 
 std::vector<std::string> kept_by(Record const& run) {
   std::vector<std::string> names;
-  for (Quantity const& q : quantities) {
+  for (Invariant const& q : invariants) {
     if (finite(run.*q.drift).value_or(INFINITY) <= kept) names.emplace_back(q.name);
   }
   return names;
@@ -76,14 +67,10 @@ void add_kept(Document& document, Facts const& facts) {
                 .caption = fmt::format("{}: largest drift at h = {} s without projection. Energy and |L| are relative; "
                                        "\"kept\" means within 1e-13. Adaptive runs have no h and are not here.",
                                        instance.label, significant(*h)),
-                .columns = {{"integrator"},
-                            {"coordinates"},
-                            {"norm", true},
-                            {"energy", true},
-                            {"|L|", true},
-                            {"direction of L [rad]", true},
-                            {"attitude error [rad]", true},
-                            {"kept"}}};
+                .columns = {{"integrator"}, {"coordinates"}}};
+    for (Invariant const& q : invariants) table.columns.push_back({fmt::format("{}{}", q.name, q.unit), true});
+    table.columns.push_back({"attitude error [rad]", true});
+    table.columns.push_back({"kept"});
     std::vector<Record const*> shown;
     for (Sweep const& sweep : instance.sweeps()) {
       for (Record const* run : sweep.runs) {
@@ -92,11 +79,11 @@ void add_kept(Document& document, Facts const& facts) {
     }
     for (Record const* run : shown) {
       std::vector<Entry> row{run->of.integrator, run->of.formulation};
-      for (Quantity const& q : quantities) row.push_back(number(run->*q.drift, 2));
+      for (Invariant const& q : invariants) row.push_back(number(run->*q.drift, 2));
       row.push_back(number(run->attitude_error_max, 2));
       auto const names = kept_by(*run);
       row.emplace_back(names.empty()                           ? std::string("nothing")
-                       : names.size() == std::size(quantities) ? std::string("all four")
+                       : names.size() == std::size(invariants) ? std::string("all four")
                                                                : fmt::format("{}", fmt::join(names, ", ")));
       table.rows.push_back(std::move(row));
     }

@@ -124,7 +124,7 @@ Table cheapest_table(Instance const& instance, Measure measure, std::size_t n) {
                           {"high", true, true},
                           {"at the target", true},
                           {"times the best", true}}};
-  for (double const target : {1e-6, 1e-9}) {
+  for (double const target : usual_targets) {
     auto const costs = ranking(instance, target, measure);
     for (std::size_t i = 0; i < costs.size(); ++i) {
       Cost const& cost = costs[i];

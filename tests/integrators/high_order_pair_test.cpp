@@ -1,24 +1,17 @@
 /// Explicit pairs of high order: step control, what they evaluate, other scalars, many bodies.
 #include <gtest/gtest.h>
 
-#include "integrators/high_order.hpp"
 #include "problems/dual.hpp"
 #include "problems/pd_slew.hpp"
 #include "problems/quaternion_sync.hpp"
+#include "tests/integrators/high_order_pairs.hpp"
 
 namespace polhode {
 namespace {
 
-template <class M, class T>
-struct Entry {
-  using Method = M;
-  using Tableau = T;
-};
 template <class E>
 class HighOrderPair : public testing::Test {};
-using Entries = testing::Types<Entry<Dop853, DormandPrince853>, Entry<Verner65, Verner6>, Entry<Verner76, Verner7>,
-                               Entry<Verner98, Verner9>>;
-TYPED_TEST_SUITE(HighOrderPair, Entries);
+TYPED_TEST_SUITE(HighOrderPair, test::HighOrderPairs);
 
 template <Scalar S>
 auto slew() {

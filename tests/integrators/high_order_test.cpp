@@ -5,24 +5,17 @@
 #include <array>
 #include <cmath>
 
-#include "integrators/high_order.hpp"
 #include "problems/free_body.hpp"
 #include "problems/pd_slew.hpp"
+#include "tests/integrators/high_order_pairs.hpp"
 #include "tests/support/quad_runs.hpp"
 
 namespace polhode {
 namespace {
 
-template <class M, class T>
-struct Entry {
-  using Method = M;
-  using Tableau = T;
-};
 template <class E>
 class HighOrder : public testing::Test {};
-using Entries = testing::Types<Entry<Dop853, DormandPrince853>, Entry<Verner65, Verner6>, Entry<Verner76, Verner7>,
-                               Entry<Verner98, Verner9>>;
-TYPED_TEST_SUITE(HighOrder, Entries);
+TYPED_TEST_SUITE(HighOrder, test::HighOrderPairs);
 
 /// Stiffer and faster than by default: there the pairs are asymptotic long before round-off. On the default slew
 /// Verner's 6(5), whose leading terms are small, falls by order 7 and more down to 1e-23.
