@@ -51,6 +51,8 @@ struct RunWith {
   Method method;
   Control control;
 };
+template <class Method, class Control>
+RunWith(Method, Control) -> RunWith<Method, Control>;  // clang 16 does not deduce it
 /// The measured run goes through virtual calls, a lane at a time; the timed one through the widest registers.
 template <class D, class... Run>
 void expect_same_bits(D const& definition, double t_end, Run const&... runs) {
